@@ -70,6 +70,10 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let plan = selection::on_threads(0, || experiments.plan(&cases, &options, console))?;
     let ready = drawable(&plan)?;
     let level = arguments.level.unwrap_or_else(Level::new);
+    let is_told = arguments.format == Format::Table && !console.quiet;
+    if is_told {
+        output::print(&page::console::opening(&plan, *rounds, *draws))?;
+    }
     let total = ready * u64::from(*rounds) * draws;
     let mut bench = selection::on_threads(usize::from(*threads), || {
         let bar = output::progress("timing", "draws", total, console);
@@ -97,10 +101,10 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         _ => None,
     };
     let stored = errors.keep(baselines.store(why_not, |path| now.write(path)));
-    let is_told = arguments.format == Format::Table && !console.quiet;
     if let Some(files) = files.filter(|_| is_told) {
         let (out, page) = (arguments.out.display(), output::report_in(&arguments.out));
-        let said = format!("{files} files in {out}\n{stored}{page}");
+        let meaning = page::console::meaning(&bench);
+        let said = format!("{files} files in {out}\n{stored}{meaning}{page}");
         errors.keep(output::print(&said));
     }
     Ok(errors.close(u8::from(is_worse)))

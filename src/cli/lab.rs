@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use numeric::digits::counted;
 use numeric::rng::Address;
 
 use super::selection::{Seed, Threads};
@@ -38,6 +39,11 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
     // Single precision comes after the pages.
     let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
     let run = Run { effort, seed: arguments.seed.seed };
+    if !console.quiet {
+        let form = if arguments.quick { "the short form" } else { "the long form" };
+        let (parts, seed) = (PAGES.len() + 1, run.seed);
+        output::print(&format!("stress: {parts} parts, {form}, seed {seed}\n"))?;
+    }
     let found = arguments.threads.install(|| Ok(stress::all(run, prepared, &|_| bar.inc(1))))?;
     bar.finish_and_clear();
     let written = output::write(&page::artifacts(&found)?, &arguments.out);
@@ -96,6 +102,13 @@ pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> any
     let runs = if arguments.long { LONG } else { arguments.runs };
     let many = if arguments.long { LONG_STREAMS } else { arguments.streams };
     let begin = Instant::now();
+    if !console.quiet {
+        let (laws, seed) = (streams::LAWS.len(), arguments.seed.seed);
+        output::print(&format!(
+            "self-test: {runs} runs of the calibration, {} of each of {laws} distributions, all known bugs, seed {seed}\n",
+            counted(many, "stream")
+        ))?;
+    }
     let found = arguments.threads.install(|| {
         let bar = output::progress("calibrating", "runs", runs, console);
         let calibration = calibration::calibrate(runs, &|n| bar.inc(n))?;
@@ -112,6 +125,9 @@ pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> any
     }
     if !console.quiet {
         output::print(&self_test::table(&found, output::pen(console)))?;
+        if let Some(out) = &arguments.out {
+            output::print(&format!("tables: {}\n", out.join("self-test").display()))?;
+        }
     }
     Ok(u8::from(!found.holds()))
 }

@@ -13,7 +13,7 @@ use crate::draw::store::{Header, Store};
 use crate::plan::options::DRAWS;
 use crate::record::baseline::fingerprint;
 use crate::record::build;
-use crate::report::run::console::View;
+use crate::report::run::console::{View, foretold};
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]
@@ -43,9 +43,18 @@ pub fn predict(
     let cases = selection.read(catalogue, console)?;
     let predict = if arguments.optimum { build::predicted_with_optima } else { build::predicted };
     let options = selection.options(DRAWS)?;
-    let record = selection.with_plan(&cases, &options, console, |plan| Ok(predict(plan)))?;
+    let is_told = arguments.format == Format::Table && !console.quiet;
+    let record = selection.with_plan(&cases, &options, console, |plan| {
+        if is_told {
+            output::print(&foretold(plan))?;
+        }
+        Ok(predict(plan))
+    })?;
     let view = if arguments.moments { View::Moments } else { View::Predict };
     output::print_record(&record, view, arguments.format, console)?;
+    if is_told {
+        output::print("`trueflight run` draws these estimators and compares them with theory.\n")?;
+    }
     Ok(0)
 }
 

@@ -8,6 +8,7 @@ use crate::report::fields::{self, Shown, Table, shown, table};
 use crate::report::html as page;
 use crate::report::html::words::UNKNOWN;
 use crate::report::layout::{Paint, Pen};
+use crate::report::lists::{joined, left_out};
 use crate::report::{Artifact, ReportError};
 use numeric::digits::fixed;
 
@@ -189,8 +190,7 @@ pub fn not_empty<'a, T>(
 
 /// Returns the lengths of lists.
 pub fn counts<T>(lists: &[LeftOut<T>]) -> String {
-    let counts: Vec<_> = lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
-    counts.join("; ")
+    joined(lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())), "; ")
 }
 
 /// Returns the closing remarks: the lists, cut where they are long, and that nothing was compared or changed.
@@ -200,12 +200,9 @@ pub fn closing<T: Display>(
     has_changes: bool,
 ) -> Vec<String> {
     let list = |(why, ids): &LeftOut<T>| {
-        let shown: Vec<String> = ids.iter().take(MAX_LISTED).map(ToString::to_string).collect();
-        let more = match ids.len().saturating_sub(MAX_LISTED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        format!("{why} ({}): {}{more}", ids.len(), shown.join(", "))
+        let shown = joined(ids.iter().take(MAX_LISTED).map(ToString::to_string), ", ");
+        let more = left_out(ids.len(), MAX_LISTED).map(|more| format!(" and {more} more"));
+        format!("{why} ({}): {shown}{}", ids.len(), more.unwrap_or_default())
     };
     let same = (!has_changes).then(|| "no change in what was compared".to_owned());
     lists.iter().map(list).chain(nothing.or(same)).collect()

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 use serde::ser::Serializer;
 
-use crate::report::layout::{Column, Grid};
+use crate::report::layout::{self, Column, Grid, Pen};
 use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError};
 use numeric::digits::{count, enough, exact, fixed, percent, short, signed, time};
@@ -284,6 +284,20 @@ pub fn grid<T: Table>(rows: &[T], columns: &[Shown]) -> Grid {
     let fields = T::fields();
     let column = |shown: &Shown| fields[shown.place].column(rows, shown.rank);
     Grid { columns: columns.iter().map(column).collect() }
+}
+
+/// Returns that table with a last column of words about the rows, in green and red, as text that fits the console.
+pub fn judged<T: Table>(
+    rows: &[T],
+    columns: &[Shown],
+    (head, words): (&'static str, [&str; 2]),
+    is_good: impl Fn(&T) -> bool,
+    pen: Pen,
+) -> String {
+    let mut grid = grid(rows, columns);
+    grid.push(head, rows.iter().map(|row| layout::Field::judged(is_good(row), words)).collect());
+    grid.fit(pen.width);
+    grid.render(pen)
 }
 
 /// Lists fields, as in `"seed": "Seed of the run" = |row| row.seed;`, or with heading, unit and form, as in

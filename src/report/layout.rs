@@ -11,7 +11,7 @@ const USUAL_NAME: usize = 24;
 const MIN_NAME: usize = 10;
 
 /// Width and colours of the screen.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Pen {
     /// Number of columns of the screen.
     pub width: usize,

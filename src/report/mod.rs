@@ -1,7 +1,8 @@
 //! Reports: pure functions from results to the text on the screen and the bytes of files.
 //!
 //! Reports are stored by input: each folder has the screen, the tables, the page and the plots of one kind of results.
-//! [`run`] is about a [`Record`](crate::record::Record). Shared are [`fields`], [`layout`], [`page`], [`mod@html`] and [`plots`].
+//! [`run`] is about a [`Record`](crate::record::Record). Shared are [`fields`], [`layout`], [`lists`], [`page`],
+//! [`mod@html`] and [`plots`].
 //! A report does no arithmetic beyond formatting.
 
 #![allow(clippy::missing_errors_doc)] // [`ReportError`] tells all of them
@@ -13,6 +14,7 @@ pub mod fields;
 pub mod html;
 pub mod judge;
 pub mod layout;
+pub mod lists;
 pub mod manual;
 pub mod page;
 pub mod plots;

@@ -18,7 +18,7 @@ type Word = Vec<(Paint, String)>;
 
 /// Returns the lines of a page without the signs of Markdown. Lines of code keep their length, all others fit.
 pub fn rendered(markdown: &str, pen: Pen) -> String {
-    let mut page = Page::new(pen);
+    let mut page = Page { pen, ..Page::default() };
     // Code in brackets is a link of rustdoc; other brackets are an interval, or a condition.
     let mut resolve = |link: BrokenLink| {
         link.reference.starts_with('`').then(|| (CowStr::from(""), CowStr::from("")))
@@ -32,6 +32,7 @@ pub fn rendered(markdown: &str, pen: Pen) -> String {
 }
 
 /// State of reading: open lists, paints and words, and the lines so far.
+#[derive(Default)]
 struct Page {
     pen: Pen,
     text: String,
@@ -50,12 +51,6 @@ struct Page {
 }
 
 impl Page {
-    fn new(pen: Pen) -> Self {
-        let (words, paints, lists, rows) = Default::default();
-        let (text, bullet) = Default::default();
-        Self { pen, text, words, is_glued: false, paints, lists, bullet, in_code: false, rows }
-    }
-
     fn read(&mut self, event: Event) {
         match event {
             Event::Start(tag) => self.open(&tag),

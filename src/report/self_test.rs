@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::report::fields::{self, Shown, Table, grid, shown, table};
+use crate::report::fields::{self, Shown, Table, grid, judged, shown, table};
 use crate::report::layout::{Field, Paint, Pen};
+use crate::report::lists::joined;
 use crate::report::{Artifact, ReportError};
 use crate::self_test::SelfTest;
 use lab::calibration::{Calibration, Rate};
@@ -43,19 +44,13 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     );
     let _ = writeln!(text, "{} · {} draws", pen.paint(Paint::Bold, &title), count(*draws));
     let rates: Vec<&Rate> = rates(calibration).collect();
-    let mut grid = grid(&rates, RATES);
-    let kept = rates.iter().map(|rate| Field::judged(rate.is_kept, KEPT));
-    grid.push("", kept.collect());
-    grid.fit(pen.width);
-    text.push_str(&grid.render(pen));
-    let uniform = calibration
-        .uniformity
-        .iter()
-        .filter_map(|check| Some(format!("{} {}", check.check, short(check.p?, 2))));
-    let uniform: Vec<String> = uniform.collect();
+    text.push_str(&judged(&rates, RATES, ("", KEPT), |rate| rate.is_kept, pen));
+    let uniform = calibration.uniformity.iter();
+    let uniform =
+        uniform.filter_map(|check| Some(format!("{} {}", check.check, short(check.p?, 2))));
+    let uniform = joined(uniform, ", ");
     if !uniform.is_empty() {
-        let said =
-            format!("p-values against the uniform law, Anderson–Darling p: {}", uniform.join(", "));
+        let said = format!("p-values against the uniform law, Anderson–Darling p: {uniform}");
         pen.say(text, Paint::Dim, &said);
     }
     text.push('\n');
@@ -63,17 +58,14 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
 
 fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
     let failed: u64 = streams.iter().map(|verdicts| verdicts.failed).sum();
-    let judged: u64 = streams.iter().map(|verdicts| verdicts.streams).sum();
+    let all: u64 = streams.iter().map(|verdicts| verdicts.streams).sum();
     let title = format!(
-        "foreign draws: {failed} of {judged} verdicts on correct streams of difficult distributions fail"
+        "foreign draws: {failed} of {all} verdicts on correct streams of difficult distributions fail"
     );
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
     let rows: Vec<&StreamVerdicts> = streams.iter().collect();
-    let mut grid = grid(&rows, STREAMS);
-    let kept = streams.iter().map(|verdicts| Field::judged(verdicts.is_kept(), KEPT));
-    grid.push("", kept.collect());
-    grid.fit(pen.width);
-    let _ = writeln!(text, "{}", grid.render(pen));
+    let table = judged(&rows, STREAMS, ("", KEPT), |verdicts| verdicts.is_kept(), pen);
+    let _ = writeln!(text, "{table}");
 }
 
 /// Returns all rates with a promise.
@@ -105,8 +97,7 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
 
 /// Returns the checks that fail beside the one that must.
 fn others(mutant: &Caught) -> String {
-    let others = mutant.failed.iter().filter(|name| *name != mutant.check);
-    others.map(String::as_str).collect::<Vec<_>>().join(", ")
+    joined(mutant.failed.iter().filter(|name| *name != mutant.check), ", ")
 }
 
 table! {

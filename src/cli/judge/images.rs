@@ -12,6 +12,7 @@ use crate::judge::images::against::{Terms, compare};
 use crate::judge::images::{Claim, Judgement, Level, Options, Stack, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
+use numeric::digits::counted;
 
 /// Options on images.
 #[derive(Debug, Args)]
@@ -121,7 +122,13 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     show(&judgement, &name, arguments, console)?;
     let mut errors = output::Errors::default();
     if let Some(out) = &images.out {
-        errors.write(report::artifacts(&judgement, &name), out);
+        let files = errors.write(report::artifacts(&judgement, &name), out);
+        if let Some(files) = files.filter(|_| arguments.format == Shown::Table && !console.quiet) {
+            let page = out.join("z-map.png");
+            let map = if files > 1 { format!("map: {}\n", page.display()) } else { String::new() };
+            let files = counted(files as u64, "file");
+            errors.keep(output::print(&format!("{files} in {}\n{map}", out.display())));
+        }
     }
     errors.keep(arguments.write_junit(&[Told::of_images(&name, &judgement)], &[]));
     Ok(errors.close(arguments.code(judgement.verdict)))

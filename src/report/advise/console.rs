@@ -7,6 +7,7 @@ use crate::advise::search::MAX_FACTOR;
 use crate::advise::{Advice, Group, Row, Target};
 use crate::report::fields::{Shown, grid, shown};
 use crate::report::layout::{Paint, Pen, end_elided};
+use crate::report::lists::joined;
 use numeric::digits::{fixed, percent, short, time};
 
 /// Columns, each with its rank, before and after the goal.
@@ -47,10 +48,8 @@ pub fn facts(advice: &Advice) -> String {
         (Target::Budget(budget), "s") => format!("within {}", time(budget)),
         (Target::Budget(budget), _) => format!("within {} lookups", short(budget, 4)),
     };
-    let rays = format!("{} rays, each", advice.rays);
-    let rays = Some(rays).filter(|_| advice.rays > 1);
-    let words = [Some(advice.problem.clone()), Some(advice.medium.clone()), rays, Some(goal)];
-    words.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+    let rays = (advice.rays > 1).then(|| format!("{} rays, each", advice.rays));
+    joined([&*advice.problem, &advice.medium, &rays.unwrap_or_default(), &goal], " · ")
 }
 
 /// Returns the table.
@@ -81,17 +80,17 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
         dropped.extend(grid.fit(pen.width));
         text.push_str(&grid.render(pen));
     }
-    if let Some(best) = advice.best() {
-        let _ = writeln!(text, "\n{}", pen.paint(Paint::Bold, "advice: put into the case"));
-        for line in best.lines.lines() {
-            let _ = writeln!(text, "  {}", pen.paint(Paint::Cyan, line));
-        }
-    }
     dropped.sort_unstable();
     dropped.dedup();
     let narrow = format!("left out on a console this narrow: {}", dropped.join(", "));
     for note in notes(advice).into_iter().chain((!dropped.is_empty()).then_some(narrow)) {
         pen.note(&mut text, &note, ("", Paint::Plain));
+    }
+    if let Some(best) = advice.best() {
+        let _ = writeln!(text, "\n{}", pen.paint(Paint::Bold, "advice: put into the case"));
+        for line in best.lines.lines() {
+            let _ = writeln!(text, "  {}", pen.paint(Paint::Cyan, line));
+        }
     }
     text
 }

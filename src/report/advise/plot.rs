@@ -1,12 +1,13 @@
 //! `advise.svg` and `advise.png`: time to the error against σ̂, and σ̂ along the ray.
 
+use crate::advise::profile::Profile;
 use crate::advise::{Advice, Row, Target};
 use crate::report::ReportError;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::{COLOURS, DARK, Style};
 use crate::report::plots::{Axis, Panel, Sheet};
-use numeric::digits::short;
+use numeric::digits::{counted, number, short};
 
 const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;
@@ -30,7 +31,7 @@ pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
             marker: None,
             colour,
         };
-        entries.push(line("(b) |σₜ − σ_c|", DARK));
+        entries.push(line(&format!("(b) {}|σₜ − σ_c|", scale(profile).1), DARK));
         entries.push(line(&format!("(b) best σ\u{302}(t), {}", profile.estimator), COLOURS[1]));
     }
     let notes = vec![
@@ -38,7 +39,7 @@ pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
             .to_owned(),
     ];
     let foot = Foot { top: TOP + PANEL[1] + 84.0, entries: &entries, notes: &notes };
-    let rays = if advice.rays == 1 { "1 ray".to_owned() } else { format!("{} rays", advice.rays) };
+    let rays = counted(advice.rays as u64, "ray");
     let facts = format!("{}  ·  {}  ·  {rays}", advice.case, advice.medium);
     let mut figure = Figure::with_foot(&advice.case, WIDTH, [&advice.title, &facts], &foot)?;
     costs(&mut figure.sheet, advice, &rows);
@@ -80,12 +81,23 @@ fn costs(sheet: &mut Sheet, advice: &Advice, rows: &[&Row]) {
     panel.frame(sheet, "(a) Cost against a constant σ\u{302}");
 }
 
+/// Returns the power of ten, and its words, by which the residual is as high as the best σ̂ at most.
+fn scale(profile: &Profile) -> (f64, String) {
+    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let residual = most(&mut profile.residual.iter().map(|point| point[1]));
+    let ratio = most(&mut profile.values.iter().copied()) / residual;
+    let scale = 10_f64.powf(ratio.log10().floor().clamp(0.0, 300.0));
+    let is_used = scale.is_finite() && scale > 1.0;
+    if is_used { (scale, format!("{} × ", number(scale))) } else { (1.0, String::new()) }
+}
+
 /// Draws the first profile along the ray.
 fn along(sheet: &mut Sheet, advice: &Advice) {
     let Some(profile) = advice.profiles.first() else { return };
     let steps = || profile.breaks.windows(2).zip(&profile.values);
     let sampling: Vec<(f64, f64)> = steps().flat_map(|(t, &y)| [(t[0], y), (t[1], y)]).collect();
-    let residual = profile.residual.iter().map(|&[t, y]| (t, y));
+    let (scale, _) = scale(profile);
+    let residual = profile.residual.iter().map(|&[t, y]| (t, scale * y));
     let x = Axis::around("t [length]", false, 0.02, profile.breaks.iter().copied());
     let heights = sampling.iter().map(|point| point.1).chain(residual.clone().map(|point| point.1));
     let y = Axis::around("extinction [1/length]", false, 0.04, heights.chain([0.0]));

@@ -4,11 +4,14 @@ use std::fmt::Write;
 
 use super::diff;
 use super::tables::Joined;
-use crate::bench::record::{Bench, BenchCase, BenchRow};
+use crate::bench::record::{Bench, BenchCase, BenchRow, Conditions};
+use crate::plan::Plan;
 use crate::report::fields::{Shown, grid, shown};
 use crate::report::layout::{Column, Paint, Pen, end_elided};
+use crate::report::lists::grouped;
+use crate::report::run::console::subjects;
 use crate::report::run::console::views::swept_apart;
-use numeric::digits::{count, fixed, short};
+use numeric::digits::{count, counted, fixed, short};
 
 /// Columns, each with its rank.
 const COLUMNS: &[Shown] = shown!(Joined:
@@ -47,24 +50,44 @@ fn block(text: &mut String, pen: Pen, bench: &Bench, case: &BenchCase) {
 
 /// Adds the reasons why numbers are missing: each reason once, with its rows.
 fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
-    let mut notes: Vec<(&BenchRow, Vec<String>)> = Vec::new();
-    for row in case.rows.iter().filter(|row| !row.reason.is_empty()) {
-        let place = row.id.swept_value().map(|x| case.digits().text(x));
-        let same = |note: &&mut (&BenchRow, Vec<String>)| {
-            note.0.reason == row.reason && note.0.id.label() == row.id.label()
-        };
-        match notes.iter_mut().find(same) {
-            Some(note) => note.1.extend(place),
-            None => notes.push((row, place.into_iter().collect())),
-        }
-    }
-    for (row, mut places) in notes {
+    let lacking = case.rows.iter().filter(|row| !row.reason.is_empty());
+    let notes = grouped(lacking, |one, other| {
+        one.reason == other.reason && one.id.label() == other.id.label()
+    });
+    for rows in notes {
+        let (row, swept) = (rows[0], rows.iter().filter_map(|row| row.id.swept_value()));
+        let mut places: Vec<String> = swept.map(|x| case.digits().text(x)).collect();
         places.dedup();
         let at =
             if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) };
         let word = if row.is_refused { "refused" } else { "note" };
         let note = format!("{word} {}{at}: {}", row.id.label(), row.reason);
         pen.note(text, &note, ("", Paint::Plain));
+    }
+}
+
+/// Returns the first line of a bench: what is timed.
+pub fn opening(plan: &Plan, rounds: u32, draws: u64) -> String {
+    let seed = plan.options.seed;
+    let drawn = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok()).count();
+    let (cases, experiments) = (subjects(plan), counted(drawn as u64, "experiment"));
+    let draws = counted(draws, "draw");
+    format!("{cases}: {experiments}, {} of {draws}, seed {seed}\n", counted(rounds.into(), "round"))
+}
+
+/// Returns the meaning of the times, in a sentence.
+pub fn meaning(bench: &Bench) -> String {
+    let Conditions { level, threads, .. } = &bench.conditions;
+    match &bench.comparison {
+        Some(found) if found.fails() => {
+            format!("fail: something became slower than baseline {}\n", found.name)
+        }
+        Some(found) if !found.is_empty() => {
+            format!("pass: nothing became slower than baseline {}\n", found.name)
+        }
+        _ => format!(
+            "Times hold for this machine ({level}, threads: {threads}); --save-baseline NAME keeps them to compare later ones with.\n"
+        ),
     }
 }
 

@@ -7,6 +7,7 @@ use plotters::style::{Color, RGBAColor};
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::record::Digits;
+use crate::report::lists::joined;
 use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::series::{marks, numbered};
@@ -72,9 +73,8 @@ fn label(row: &BenchRow, labels: Digits) -> String {
     let sampling = row.sampling().map(|sampling| format!("σ\u{302} = {}", labels.text(sampling)));
     let sampling = sampling.unwrap_or_else(|| row.id.sampling.kind.clone());
     let parts = [row.id.label(), sampling, row.id.control.clone(), row.channel.clone()];
-    let label: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     let marks = marks(&row.needs, row.setup_lookups.map(|count| count..=count), false);
-    format!("{}{marks}", label.join(", "))
+    format!("{}{marks}", joined(parts, ", "))
 }
 
 impl Series<'_> {

@@ -38,8 +38,10 @@ pub fn document(title: &str, sections: &Markup) -> String {
     OPTIONAL.iter().fold(page.into_string(), |page, end| page.replace(end, ""))
 }
 
-/// Returns facts, each with its name.
+/// Returns the facts that are known, each with its name.
 pub fn facts<'a>(facts: impl IntoIterator<Item = (&'a str, String)>) -> Markup {
+    let is_known = |(_, value): &(&str, String)| !value.is_empty() && value != words::UNKNOWN;
+    let facts = facts.into_iter().filter(is_known);
     html! {
         dl.facts { @for (name, value) in facts { div { dt { (name) } dd { (value) } } } }
     }

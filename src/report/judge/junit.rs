@@ -33,10 +33,10 @@ impl Told {
             ("predicted variance", judgement.predicted_variance),
         ];
         let known = numbers.iter().filter_map(|(what, x)| Some(format!("{what} {}", exact((*x)?))));
-        let lines =
-            known.chain(judgement.guarantees.iter().cloned()).chain(judgement.pattern().lines());
+        let mut lines: Vec<String> = known.chain(judgement.guarantees.iter().cloned()).collect();
+        lines.extend(judgement.pattern().lines());
         let (verdict, reason) = (judgement.verdict, judgement.reason.clone());
-        Self { name: name.to_owned(), verdict, reason, lines: lines.collect() }
+        Self { name: name.to_owned(), verdict, reason, lines }
     }
 
     /// Returns the verdict on images of this name.
@@ -48,13 +48,11 @@ impl Told {
             ("failing tiles", counts.fail),
             ("listed tiles", counts.listed),
         ];
-        let lines = numbers
-            .iter()
-            .map(|(what, count)| format!("{what} {count}"))
-            .chain(judgement.guarantees.iter().cloned())
-            .chain(judgement.likely());
+        let known = numbers.iter().map(|(what, count)| format!("{what} {count}"));
+        let mut lines: Vec<String> = known.chain(judgement.guarantees.iter().cloned()).collect();
+        lines.extend(judgement.likely());
         let (verdict, reason) = (judgement.verdict, judgement.reason.clone());
-        Self { name: name.to_owned(), verdict, reason, lines: lines.collect() }
+        Self { name: name.to_owned(), verdict, reason, lines }
     }
 }
 

@@ -3,6 +3,8 @@
 //! Equal lines are drawn as one striped line: each has every n-th stripe. A line that coincides with a part of a longer
 //! one is drawn over it with gaps.
 
+use crate::report::lists::{grouped, joined};
+
 /// Length of a stripe, in pixels.
 const STRIPE: f64 = 9.0;
 /// Relative difference below which values are equal: the same formulas differ by rounding.
@@ -56,13 +58,8 @@ pub struct Class {
 /// ones first, so that dashes stay visible where two lines coincide. `dashes` are those of the lines.
 pub fn classes(lines: &[Line], dashes: &[&[f64]]) -> Vec<Class> {
     let on = |a: usize, b: usize| lines[a].lies_on(&lines[b]);
-    let mut members: Vec<Vec<usize>> = Vec::new();
-    for index in (0..lines.len()).filter(|&index| lines[index].length() > 0) {
-        match members.iter_mut().find(|class| on(index, class[0]) && on(class[0], index)) {
-            Some(class) => class.push(index),
-            None => members.push(vec![index]),
-        }
-    }
+    let drawn = (0..lines.len()).filter(|&index| lines[index].length() > 0);
+    let members = grouped(drawn, |&first, &index| on(index, first) && on(first, index));
     let mut classes: Vec<Class> = members
         .iter()
         .map(|class| {
@@ -104,46 +101,27 @@ impl Class {
 /// Returns notes on lines that lie on each other, from the classes of each panel with its letter and the names of the
 /// lines.
 pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
-    let mut equal: Vec<(String, Vec<char>)> = Vec::new();
-    let mut upon: Vec<(String, Vec<char>)> = Vec::new();
-    let say = |list: &mut Vec<(String, Vec<char>)>, words: String, panel: char| match list
-        .iter_mut()
-        .find(|(other, _)| *other == words)
-    {
-        Some((_, panels)) => panels.push(panel),
-        None => list.push((words, vec![panel])),
+    let names_of = |list: &[usize], by: &str| joined(list.iter().map(|&index| names[index]), by);
+    let equal = |class: &Class| (class.members.len() > 1).then(|| names_of(&class.members, " = "));
+    let upon = |Class { members, hosts }: &Class| {
+        let names = || format!("{} on {}", names[members[0]], names_of(hosts, ", "));
+        (!hosts.is_empty()).then(names)
     };
-    for (panel, classes) in panels {
-        for Class { members, hosts } in classes {
-            let names_of = |list: &[usize], by: &str| {
-                list.iter().map(|&index| names[index]).collect::<Vec<_>>().join(by)
-            };
-            if members.len() > 1 {
-                say(&mut equal, names_of(members, " = "), *panel);
-            }
-            if !hosts.is_empty() {
-                say(
-                    &mut upon,
-                    format!("{} on {}", names[members[0]], names_of(hosts, ", ")),
-                    *panel,
-                );
-            }
-        }
-    }
-    let told = |(words, panels): &(String, Vec<char>)| {
-        let panels: Vec<String> = panels.iter().map(char::to_string).collect();
-        format!("({}) {words}", panels.join(", "))
+    let note = |head: &str, words: &dyn Fn(&Class) -> Option<String>| {
+        let said = panels.iter().flat_map(|(panel, classes)| {
+            classes.iter().filter_map(|class| Some((panel.to_string(), words(class)?)))
+        });
+        let lines = grouped(said, |one, other| one.1 == other.1).into_iter().map(|alike| {
+            format!("({}) {}", joined(alike.iter().map(|one| &one.0), ", "), alike[0].1)
+        });
+        let lines = joined(lines, "; ");
+        (!lines.is_empty()).then(|| format!("{head}: {lines}"))
     };
-    let lists = [
-        ("Equal in theory, one striped line", equal),
-        ("Equal in theory where both are drawn, one line on the other", upon),
+    let notes = [
+        note("Equal in theory, one striped line", &equal),
+        note("Equal in theory where both are drawn, one line on the other", &upon),
     ];
-    let lists = lists.into_iter().filter(|(_, list)| !list.is_empty());
-    lists
-        .map(|(head, list)| {
-            format!("{head}: {}", list.iter().map(told).collect::<Vec<_>>().join("; "))
-        })
-        .collect()
+    notes.into_iter().flatten().collect()
 }
 
 /// Places points side by side that would hide each other. Returns for each point in turn a shift to the right, at most
@@ -163,6 +141,14 @@ pub fn side_by_side(points: &[[f64; 2]], apart: f64, most: f64) -> Vec<f64> {
         shift
     });
     shifts.collect()
+}
+
+/// Returns the smallest distance between two of the places that are not above each other; infinite without such places.
+pub fn smallest_step(places: impl Iterator<Item = f64>) -> f64 {
+    let mut places: Vec<f64> = places.collect();
+    places.sort_by(f64::total_cmp);
+    let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);
+    steps.fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

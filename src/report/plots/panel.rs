@@ -60,16 +60,23 @@ impl Panel {
 
     /// Draws the grid, which lies behind the data.
     pub fn grid(&self, sheet: &mut Sheet) {
-        for tick in self.x.ticks(7).iter().filter(|tick| !tick.label.is_empty()) {
-            if let Some(x) = self.across(tick.at) {
-                sheet.path(vec![[x, self.top], [x, self.bottom]], 1.0, FAINT);
-            }
+        let [across, down] = self.ticks();
+        for (x, _) in across.into_iter().filter(|(_, label)| !label.is_empty()) {
+            sheet.path(vec![[x, self.top], [x, self.bottom]], 1.0, FAINT);
         }
-        for tick in self.y.ticks(6).iter().filter(|tick| !tick.label.is_empty()) {
-            if let Some(y) = self.down(tick.at) {
-                sheet.path(vec![[self.left, y], [self.right, y]], 1.0, FAINT);
-            }
+        for (y, _) in down.into_iter().filter(|(_, label)| !label.is_empty()) {
+            sheet.path(vec![[self.left, y], [self.right, y]], 1.0, FAINT);
         }
+    }
+
+    /// Returns the ticks of both axes, each with its place on the sheet and its label.
+    fn ticks(&self) -> [Vec<(f64, String)>; 2] {
+        let across = self.x.ticks(7).into_iter();
+        let down = self.y.ticks(6).into_iter();
+        [
+            across.filter_map(|tick| Some((self.across(tick.at)?, tick.label))).collect(),
+            down.filter_map(|tick| Some((self.down(tick.at)?, tick.label))).collect(),
+        ]
     }
 
     /// Draws frame, ticks, labels and titles, which lie before the data.
@@ -79,17 +86,15 @@ impl Panel {
         for side in corners.windows(2) {
             sheet.path(side.to_vec(), 1.0, DARK);
         }
-        for tick in self.x.ticks(7) {
-            let Some(x) = self.across(tick.at) else { continue };
-            let length = if tick.label.is_empty() { 3.0 } else { 6.0 };
-            sheet.path(vec![[x, bottom], [x, bottom - length]], 1.0, DARK);
-            sheet.text([x, bottom + 15.0], tick.label, TICK, DARK, Align::Middle);
+        let length = |label: &str| if label.is_empty() { 3.0 } else { 6.0 };
+        let [across, down] = self.ticks();
+        for (x, label) in across {
+            sheet.path(vec![[x, bottom], [x, bottom - length(&label)]], 1.0, DARK);
+            sheet.text([x, bottom + 15.0], label, TICK, DARK, Align::Middle);
         }
-        for tick in self.y.ticks(6) {
-            let Some(y) = self.down(tick.at) else { continue };
-            let length = if tick.label.is_empty() { 3.0 } else { 6.0 };
-            sheet.path(vec![[left, y], [left + length, y]], 1.0, DARK);
-            sheet.text([left - 8.0, y], tick.label, TICK, DARK, Align::End);
+        for (y, label) in down {
+            sheet.path(vec![[left, y], [left + length(&label), y]], 1.0, DARK);
+            sheet.text([left - 8.0, y], label, TICK, DARK, Align::End);
         }
         let [middle, centre] = [left.midpoint(right), top.midpoint(bottom)];
         sheet.text([middle, bottom + 38.0], &self.x.title, TITLE, DARK, Align::Middle);
@@ -217,22 +222,23 @@ mod tests {
         Panel { left: 0.0, top: 0.0, right: 90.0, bottom: 90.0, x: axis(false), y: axis(true) }
     }
 
+    /// Returns the points of all shapes.
+    fn paths(sheet: &Sheet) -> Vec<Vec<Spot>> {
+        let points = |shape: &Shape| match shape {
+            Shape::Path { points, .. } => points.clone(),
+            other => panic!("not a path: {other:?}"),
+        };
+        sheet.shapes.iter().map(points).collect()
+    }
+
     #[test]
     fn lines_end_at_the_edge_and_break_where_there_is_no_place() {
         let mut sheet = Sheet::new(90.0, 90.0);
         let points = [(1.0, 1.0), (5.5, 100.0), (6.0, 0.0), (7.0, 2.0), (8.0, 2.0)];
         panel().line(&mut sheet, points, (&[], 1.0, DARK));
-        let paths: Vec<_> = sheet
-            .shapes
-            .iter()
-            .map(|shape| match shape {
-                Shape::Path { points, .. } => points.clone(),
-                _ => Vec::new(),
-            })
-            .collect();
+        let paths = paths(&sheet);
         assert_eq!(paths.len(), 2);
         assert_eq!(paths[0], [[0.0, 90.0], [22.5, 0.0]]);
-        assert!(sheet.shapes.len() == 2);
     }
 
     #[test]
@@ -241,14 +247,7 @@ mod tests {
         let bar = [0.0, 10_f64.powf(0.5), 10.0];
         assert!(panel().cuts(bar) && !panel().cuts([2.0, 3.0, 4.0]));
         panel().bar(&mut sheet, 45.0, bar, (3.0, 1.0, DARK));
-        let paths: Vec<_> = sheet
-            .shapes
-            .iter()
-            .map(|shape| match shape {
-                Shape::Path { points, .. } => points.clone(),
-                _ => Vec::new(),
-            })
-            .collect();
+        let paths = paths(&sheet);
         // A cap at the upper end, a stub with an arrow at the lower one.
         assert_eq!(paths[0], [[45.0, 0.0], [45.0, 45.0 + STUB]]);
         assert_eq!(paths[1], [[42.0, 0.0], [45.0, 0.0], [48.0, 0.0]]);
@@ -268,8 +267,7 @@ mod tests {
             }
         }
         assert!(!sheet.shapes.is_empty());
-        for shape in &sheet.shapes {
-            let Shape::Path { points, .. } = shape else { panic!("a path") };
+        for points in paths(&sheet) {
             assert!(points.iter().all(|&spot| panel().holds(spot)), "{points:?}");
         }
     }

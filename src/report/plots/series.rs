@@ -1,6 +1,7 @@
 //! Series of a sweep: the rows and the curve that belong together.
 
 use crate::record::{CaseRecord, Compared, Curve, CurvePoint, Digits, Row, Sweep, Verdict};
+use crate::report::lists::joined;
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::Style;
 use numeric::digits::count;
@@ -51,11 +52,8 @@ impl Series<'_> {
     pub fn entry(&self) -> Entry {
         let Style { colour, dash, marker } = self.style;
         let measured = self.rows.iter().any(|row| row.experiment.draws.is_some());
-        let needs = self
-            .rows
-            .iter()
-            .map(|row| row.experiment.needs.as_str())
-            .find(|needs| !needs.is_empty());
+        let mut needs = self.rows.iter().map(|row| row.experiment.needs.as_str());
+        let needs = needs.find(|needs| !needs.is_empty());
         let marks = marks(needs.unwrap_or_default(), self.setup_lookups(), self.is_fixed());
         Entry {
             label: format!("{}{marks}", self.label),
@@ -69,8 +67,8 @@ impl Series<'_> {
 /// Returns notes on refusals and on variances of 0, which plots cannot show.
 pub fn notes(series: &[Series]) -> Vec<String> {
     let list = |head: &str, of: &dyn Fn(&Series) -> Option<String>| {
-        let said: Vec<String> = series.iter().filter_map(of).collect();
-        (!said.is_empty()).then(|| format!("{head}: {}", said.join("; ")))
+        let said = joined(series.iter().filter_map(of), "; ");
+        (!said.is_empty()).then(|| format!("{head}: {said}"))
     };
     let refused = |one: &Series| {
         let refused = one.rows.iter().filter(|row| row.verdict == Some(Verdict::Refused)).count();
@@ -187,9 +185,7 @@ fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
         let is_shared = names.iter().any(|other| other[0] == *estimator && other[1] != *sampling);
         let sampling = if is_shared { sampling.clone() } else { String::new() };
         let channel = if one { String::new() } else { group.channel.to_owned() };
-        let parts = [estimator.clone(), control(group), sampling, channel];
-        let label = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
-        labels.push(label.join(", "));
+        labels.push(joined([estimator.clone(), control(group), sampling, channel], ", "));
     }
     numbered(labels)
 }
@@ -230,10 +226,8 @@ fn sampling(group: &Group, digits: Digits) -> String {
         return String::new();
     }
     let Some(first) = drawn().next() else { return String::new() };
-    let ends = drawn().filter_map(|row| row.experiment.sampling()).fold(None, |ends, value| {
-        let [low, high] = ends.unwrap_or([value; 2]);
-        Some([f64::min(low, value), f64::max(high, value)])
-    });
+    let ends = drawn().filter_map(|row| row.experiment.sampling()).map(|value| [value; 2]);
+    let ends = ends.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)]);
     match ends {
         Some([low, high]) if low < high => {
             format!("σ\u{302} {} to {}", digits.text(low), digits.text(high))

@@ -5,6 +5,7 @@ use plotters::style::RGBAColor;
 use crate::record::{Score, Sweep};
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
+use crate::report::plots::overlap::smallest_step;
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{GREY, Marker, PAPER, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
@@ -12,6 +13,9 @@ use numeric::digits::{short, signed};
 
 /// Limit of |z| within which 95 % of the scores of a correct estimator lie.
 const USUAL: f64 = 1.96;
+/// Radius of a marker, and width of the largest one with its rim.
+const RADIUS: f64 = 3.6;
+const MARKER: f64 = 10.0;
 const BAND: RGBAColor = ink(0xEE, 0xF3, 0xF7);
 const LIMIT: RGBAColor = ink(0xB0, 0x30, 0x30);
 
@@ -74,7 +78,9 @@ pub fn legend_of_hollow(series: &[Series]) -> Option<String> {
 fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let swept = series.iter().filter(|one| !one.is_fixed()).count();
     let slots = (swept * SCORES.len()) as f64;
-    let step = (0.8 * gap(panel, series) / slots.max(1.0)).min(4.0);
+    let rows = || series.iter().flat_map(|one| &one.rows);
+    let places = rows().filter_map(|row| panel.across(row.experiment.swept()?));
+    let step = (0.7 * smallest_step(places).min(120.0) / slots.max(1.0)).min(MARKER);
     // Points of a value at the edge of the sweep stay side by side within the panel.
     let reach = 4.0 + (slots - 1.0).max(0.0) / 2.0 * step;
     let (least, most) = (panel.left + reach, (panel.right - reach).max(panel.left + reach));
@@ -97,7 +103,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
                 if panel.holds(at) {
                     let what = score.quantity();
                     sheet.tip(at, format!("{}: z of the {what} {}", row.name(), signed(z)));
-                    panel.point(sheet, at, marker, 3.6, one.style.colour);
+                    panel.point(sheet, at, marker, RADIUS, one.style.colour);
                     if !row.is_normal(score) {
                         panel.point(sheet, at, marker, 0.8, PAPER);
                     }
@@ -117,16 +123,4 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
         }
     }
     beyond
-}
-
-/// Returns the smallest distance on the sheet between two values of the sweep.
-fn gap(panel: &Panel, series: &[Series]) -> f64 {
-    let swept = series
-        .iter()
-        .flat_map(|one| &one.rows)
-        .filter_map(|row| panel.across(row.experiment.swept()?));
-    let mut places: Vec<f64> = swept.collect();
-    places.sort_by(f64::total_cmp);
-    let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);
-    steps.fold(60.0, f64::min)
 }

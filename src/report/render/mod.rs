@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::fields::{self, Table, table};
+use crate::report::lists;
 use crate::report::{Artifact, ReportError};
 use media::files::{exr, pfm};
 
@@ -21,9 +22,7 @@ const ERROR: &str = "standard_error.";
 /// and as EXR. The EXR has the standard error of each value in channels of its own.
 pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: record.name.clone(), message };
-    let png = sheet::png(record).map_err(wrong)?;
-    let mut files =
-        vec![Artifact { path: PathBuf::from(format!("{}.png", record.name)), bytes: png }];
+    let mut files = vec![palette::artifact(&record.name, |face| sheet::compose(record, face))?];
     let mut keep = |name: &str, image: &[f64], errors: &[f64]| -> Result<(), ReportError> {
         let path = |ending| PathBuf::from(format!("{}/{name}.{ending}", record.name));
         let bytes = pfm::write(record.size, record.channels, image);
@@ -44,14 +43,10 @@ pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
 
 /// Returns σ̂ and control in words.
 fn given(exposure: &ExposureRecord) -> String {
-    let mut words = Vec::new();
-    if !exposure.sampling.is_empty() {
-        words.push(format!("σ̂ {}", exposure.sampling));
-    }
-    if !exposure.control.is_empty() {
-        words.push(format!("control {}", exposure.control));
-    }
-    words.join(", ")
+    let known = |name: &str, words: &str| {
+        if words.is_empty() { String::new() } else { format!("{name} {words}") }
+    };
+    lists::joined([known("σ̂", &exposure.sampling), known("control", &exposure.control)], ", ")
 }
 
 /// Returns three digits, without an exponent if that is short.

@@ -1,7 +1,7 @@
 //! Sheet of a picture: the reference and every estimator's image, below each its error in false colour, and below that
 //! its cost.
 
-use super::{colour, given, palette, short};
+use super::{colour, given, short};
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::plots::font::{self, Typeface, fit};
@@ -20,11 +20,6 @@ const MAX_CAPTION_LINES: usize = 4;
 const LETTER: f64 = 10.5;
 const LINE: f64 = 15.0;
 
-/// Returns the sheet as a PNG file.
-pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
-    palette::png(|face| compose(record, face))
-}
-
 /// Place of a column of the sheet.
 struct Column {
     left: f64,
@@ -32,7 +27,8 @@ struct Column {
     size: [f64; 2],
 }
 
-fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
+/// Returns the sheet of a picture.
+pub fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     let count = record.exposures.len() + 1;
     // The smallest number of rows, of equal length.
     let bands = count.div_ceil(MAX_IMAGES);

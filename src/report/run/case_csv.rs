@@ -13,17 +13,14 @@ use crate::report::{Artifact, ReportError, case_path};
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let mut artifacts = Vec::new();
     for case in &record.results.cases {
-        let rows = case_rows(case, record.results.seed)?;
-        artifacts.push(Artifact::text(case_path(&case.name, "csv"), rows));
+        let mut keep =
+            |ending, text| artifacts.push(Artifact::text(case_path(&case.name, ending), text));
+        keep("csv", case_rows(case, record.results.seed)?);
         if let Some(sweep) = &case.sweep {
-            artifacts
-                .push(Artifact::text(case_path(&case.name, "theory.csv"), theory(case, sweep)?));
+            keep("theory.csv", theory(case, sweep)?);
         }
         if let Some(anatomy) = &case.anatomy {
-            artifacts.push(Artifact::text(
-                case_path(&case.name, "anatomy.csv"),
-                profiles(case, anatomy)?,
-            ));
+            keep("anatomy.csv", profiles(case, anatomy)?);
         }
     }
     Ok(artifacts)

@@ -12,9 +12,10 @@ use std::fmt::Write;
 use crate::plan::{Options, Plan};
 use crate::record::{CaseRecord, Digits, Record, Row, Verdict};
 use crate::report::layout::{self, Field, Grid, Paint, end_elided};
+use crate::report::lists::grouped;
 use crate::report::run::summary_csv::Line;
 use crate::report::run::totals;
-use numeric::digits::{count, fixed, range, short};
+use numeric::digits::{count, counted, fixed, range, short};
 
 /// Subject of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,22 +55,32 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     text
 }
 
+/// Returns the case of a plan, or the number of its cases.
+pub fn subjects(plan: &Plan) -> String {
+    match &plan.cases[..] {
+        [one] => one.case.name.clone(),
+        cases => counted(cases.len() as u64, "case"),
+    }
+}
+
+/// Returns the first line of predictions.
+pub fn foretold(plan: &Plan) -> String {
+    let experiments = counted(plan.experiments().count() as u64, "experiment");
+    format!("{}: theory of {experiments}, nothing is drawn\n", subjects(plan))
+}
+
 /// Returns the first line of a run: what is drawn, and at which level.
 pub fn opening(plan: &Plan) -> String {
     let Options { seed, alpha, .. } = plan.options;
-    let cases = match &plan.cases[..] {
-        [one] => one.case.name.clone(),
-        cases => format!("{} cases", cases.len()),
-    };
+    let cases = subjects(plan);
     let drawn = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
     let [most, horizon] = drawn.fold([0; 2], |[most, horizon], (_, planned)| {
         [most.max(planned.draws), horizon.max(planned.horizon)]
     });
-    let experiments = plan.experiments().count();
-    let noun = if experiments == 1 { "experiment" } else { "experiments" };
+    let experiments = counted(plan.experiments().count() as u64, "experiment");
     format!(
-        "{cases}: {experiments} {noun}, {} each planned and at most {}, seed {seed}, α = {}\n",
-        draws(most),
+        "{cases}: {experiments}, {} each planned and at most {}, seed {seed}, α = {}\n",
+        counted(most, "draw"),
         count(horizon),
         short(alpha, 3)
     )
@@ -196,7 +207,7 @@ fn facts(block: &Block, view: View) -> Vec<String> {
         views::shared(rows, |row| row.experiment.draws).filter(|_| !view.is_theory())
     {
         let what = if view == View::Run { "statistics of " } else { "" };
-        facts.push(format!("{what}{} each", self::draws(draws)));
+        facts.push(format!("{what}{} each", counted(draws, "draw")));
     }
     if let Some(drawn) =
         views::shared(rows, |row| row.experiment.drawn).filter(|_| view == View::Run)
@@ -204,7 +215,7 @@ fn facts(block: &Block, view: View) -> Vec<String> {
         facts.push(format!("{} drawn each", count(drawn)));
     }
     if rows.iter().any(|row| row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0)) {
-        let shared = draws(case.draws_per_ray.unwrap_or(1));
+        let shared = counted(case.draws_per_ray.unwrap_or(1), "draw");
         facts.push(format!("FoM with setup lookups shared by {shared}"));
     }
     if view == View::Run {
@@ -229,26 +240,15 @@ fn reach(case: &CaseRecord) -> Vec<String> {
     bias.into_iter().chain(pace).collect()
 }
 
-fn draws(number: u64) -> String {
-    format!("{} {}", count(number), if number == 1 { "draw" } else { "draws" })
-}
-
 /// Adds the reasons without a place in the table, each once, with its rows.
 fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, room: usize) {
     let Block { case, rows, labels, .. } = block;
-    let mut notes: Vec<Vec<&Row>> = Vec::new();
     // Failures follow below the tables.
     let is_told = |row: &&Row| view == View::Run && row.verdict == Some(Verdict::Fail);
     let without = |row: &&Row| layout::width(&row.reason) > room && !is_told(row);
-    for row in rows.iter().filter(without) {
-        let same = |rows: &&mut Vec<&Row>| {
-            rows[0].reason == row.reason && rows[0].experiment.label == row.experiment.label
-        };
-        match notes.iter_mut().find(same) {
-            Some(rows) => rows.push(row),
-            None => notes.push(vec![row]),
-        }
-    }
+    let notes = grouped(rows.iter().filter(without), |one, other| {
+        one.reason == other.reason && one.experiment.label == other.experiment.label
+    });
     for row in rows.iter().filter(|row| row.experiment.same_as.is_some()) {
         let positions = views::positions(case, &[row], *labels);
         let at = if positions.is_empty() { positions } else { format!(" ({positions})") };

@@ -2,6 +2,7 @@
 
 use crate::record::{Finding, Record, Row, Verdict};
 use crate::report::fields::{Shown, Table, shown};
+use crate::report::lists::joined;
 use crate::report::run::checks_csv::FindingRow;
 use crate::report::run::summary_csv::Line;
 use gate::causes::{Pattern, Place};
@@ -61,19 +62,16 @@ impl<'a> Failure<'a> {
 
     /// Returns the address of the random numbers: `seed 1, block 3`.
     pub fn place(&self) -> String {
-        let mut place = format!("seed {}", self.seed);
-        if let Some(block) = self.finding.and_then(|finding| finding.block) {
-            place = format!("{place}, block {block}");
-        }
-        place
+        let block = self.finding.and_then(|finding| finding.block);
+        let block = block.map_or_else(String::new, |block| format!(", block {block}"));
+        format!("seed {}{block}", self.seed)
     }
 
     /// Returns everything but the command, on one line.
     pub fn line(&self) -> String {
         let experiment = self.experiment();
         let parts = [self.row.case.name.as_str(), &experiment, self.check(), self.reason()];
-        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-        format!("{} ({})", parts.join(": "), self.place())
+        format!("{} ({})", joined(parts, ": "), self.place())
     }
 
     /// Returns everything that is known, one name and value per line, and the usual causes. Names are those of the files.

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use crate::record::baseline::Comparison;
 use crate::record::{CaseRecord, Record, Verdict};
+use crate::report::lists::{joined, left_out};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure, failing};
 use crate::report::run::totals;
@@ -16,12 +17,10 @@ const MAX_LINES: usize = 50;
 /// Returns the record as a page of Markdown.
 pub fn text(record: &Record) -> String {
     let mut text = String::from("## Trueflight\n\n");
-    let counts: Vec<String> = totals::counts(&record.results.cases)
-        .iter()
-        .map(|(verdict, number)| format!("**{number} {}**", verdict.word()))
-        .collect();
-    let counts = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
-    let _ = writeln!(text, "{counts}\n");
+    let counts = totals::counts(&record.results.cases).into_iter();
+    let counts = counts.map(|(verdict, number)| format!("**{number} {}**", verdict.word()));
+    let counts = joined(counts, " · ");
+    let _ = writeln!(text, "{}\n", if counts.is_empty() { "no experiments" } else { &counts });
     for (verdict, title) in [(Verdict::Fail, "Failing"), (Verdict::Inconclusive, "Inconclusive")] {
         section(&mut text, title, &failing(record, verdict));
     }
@@ -32,17 +31,12 @@ pub fn text(record: &Record) -> String {
     cases(&mut text, &record.results.cases);
     let suspects = totals::suspects(record);
     if !suspects.is_empty() {
-        text.push_str("Look here first (e-BH): ");
-        let suspects: Vec<String> =
-            suspects.into_iter().take(MAX_LINES).map(totals::suspect).collect();
-        let _ = writeln!(
-            text,
-            "{}\n",
-            suspects.iter().map(|s| escaped(s)).collect::<Vec<_>>().join("; ")
-        );
+        let suspects = suspects.into_iter().take(MAX_LINES).map(totals::suspect);
+        let suspects = joined(suspects.map(|suspect| escaped(&suspect)), "; ");
+        let _ = writeln!(text, "Look here first (e-BH): {suspects}\n");
     }
-    let facts: Vec<String> = totals::control(record).iter().map(|fact| escaped(fact)).collect();
-    let _ = writeln!(text, "{}", facts.join(" · "));
+    let facts = totals::control(record);
+    let _ = writeln!(text, "{}", joined(facts.iter().map(|fact| escaped(fact)), " · "));
     text
 }
 
@@ -85,9 +79,9 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
     }
     for word in ["repeat", "decide"] {
         let of_word = commands.iter().filter(|next| next.0 == word).map(|next| next.1);
-        let of_word: Vec<&str> = of_word.collect();
+        let of_word = joined(of_word, "\n");
         if !of_word.is_empty() {
-            let _ = writeln!(text, "\nTo {word}:\n\n```sh\n{}\n```", of_word.join("\n"));
+            let _ = writeln!(text, "\nTo {word}:\n\n```sh\n{of_word}\n```");
         }
     }
     text.push('\n');
@@ -105,12 +99,12 @@ fn changed(text: &mut String, comparison: &Comparison) {
     if !all.is_empty() {
         text.push('\n');
     }
-    let remarks: Vec<String> = diff::remarks(comparison).iter().map(|r| escaped(r)).collect();
-    let _ = writeln!(text, "{}\n", remarks.join(" · "));
+    let remarks = diff::remarks(comparison);
+    let _ = writeln!(text, "{}\n", joined(remarks.iter().map(|one| escaped(one)), " · "));
 }
 
 fn more(text: &mut String, all: usize) {
-    if let Some(left) = all.checked_sub(MAX_LINES).filter(|&left| left > 0) {
+    if let Some(left) = left_out(all, MAX_LINES) {
         let _ = writeln!(text, "\nand {left} more.");
     }
 }

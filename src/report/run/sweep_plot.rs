@@ -6,12 +6,13 @@ mod graph;
 mod names;
 
 use crate::record::{CaseRecord, Compared, Record, Score, Sweep};
+use crate::report::lists::joined;
 use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
 use crate::report::plots::series::{self, Series, collect, only_channel};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
 use crate::report::{Artifact, ReportError};
 use graph::{Graph, Quantity};
-use numeric::digits::{count, short};
+use numeric::digits::{count, counted, short};
 
 const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;
@@ -77,13 +78,9 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
         (false, true) => Quantity { title: "figure of merit 1/(V·(N + S/n))", ..EFFICIENCY },
     };
     let quantities = [VARIANCE_AND_COST[0], VARIANCE_AND_COST[1], efficiency];
-    let graphs: Vec<Graph> = quantities
-        .into_iter()
-        .enumerate()
-        .map(|(i, quantity)| {
-            Graph::new(place(i, &x, y_axis(&quantity, &series)), quantity, &series)
-        })
-        .collect();
+    let graph =
+        |(i, quantity)| Graph::new(place(i, &x, y_axis(&quantity, &series)), quantity, &series);
+    let graphs: Vec<Graph> = quantities.into_iter().enumerate().map(graph).collect();
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
     let mut notes = vec![z_panel::note(sweep)];
     notes.extend(z_panel::legend_of_hollow(&series));
@@ -114,11 +111,9 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
 
 /// Returns the meaning of S and n.
 fn setup_note(case: &CaseRecord) -> String {
-    let draws = case.draws_per_ray.unwrap_or(1);
-    let noun = if draws == 1 { "draw" } else { "draws" };
+    let draws = counted(case.draws_per_ray.unwrap_or(1), "draw");
     format!(
-        "(c): S lookups before the first draw of a ray, shared by its n = {} {noun} (draws_per_ray of the case)",
-        count(draws)
+        "(c): S lookups before the first draw of a ray, shared by its n = {draws} (draws_per_ray of the case)"
     )
 }
 
@@ -136,8 +131,8 @@ fn channels(case: &CaseRecord, series: &[Series]) -> Option<String> {
     let one = only_channel(shown.into_iter()).map(|channel| format!("All curves: {channel}"));
     let csv =
         (!missing.is_empty()).then(|| format!("In the CSV only, for lack of room: {missing}"));
-    let said: Vec<String> = one.into_iter().chain(csv).collect();
-    (!said.is_empty()).then(|| said.join(". "))
+    let said = joined(one.into_iter().chain(csv), ". ");
+    (!said.is_empty()).then_some(said)
 }
 
 fn subtitle(case: &CaseRecord, seed: u64) -> String {

@@ -2,6 +2,7 @@
 
 use crate::record::baseline::Comparison;
 use crate::record::{CaseRecord, Record, Suspect, Verdict};
+use crate::report::lists::joined;
 use numeric::digits::{count, percent, short};
 
 /// Verdict with what tables and pages say of it.
@@ -66,10 +67,10 @@ pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
 
 /// Returns the verdicts of a case: `15 pass, 1 underpowered`.
 pub fn words(case: &CaseRecord) -> String {
-    let counts = counts(std::slice::from_ref(case));
-    let words: Vec<String> =
-        counts.iter().map(|(verdict, number)| format!("{number} {}", verdict.word())).collect();
-    if words.is_empty() { "no experiments".to_owned() } else { words.join(", ") }
+    let counts = counts(std::slice::from_ref(case)).into_iter();
+    let words =
+        joined(counts.map(|(verdict, number)| format!("{number} {}", verdict.word())), ", ");
+    if words.is_empty() { "no experiments".to_owned() } else { words }
 }
 
 /// Returns the number of draws that a case took.
@@ -94,8 +95,8 @@ pub fn control(record: &Record) -> Vec<String> {
     let results = &record.results;
     let gate = &results.gate;
     let mut facts = Vec::new();
-    if gate.scalars + gate.laws > 0 {
-        let (scalars, laws) = (gate.scalars, gate.laws);
+    let (scalars, laws) = (gate.scalars, gate.laws);
+    if scalars + laws > 0 {
         let (alpha, beta) = (short(results.alpha, 3), short(gate.beta, 3));
         facts.push(format!(
             "{scalars} scalars and {laws} distributions share α = {alpha}, β = {beta}"
@@ -158,20 +159,15 @@ impl RunVerdict {
     /// Returns it in one line.
     pub fn words(&self) -> String {
         let Self { failing, open, is_worse, rows, class } = *self;
-        let mut parts = Vec::new();
-        if failing > 0 {
-            parts.push(format!("{failing} of {rows} fail"));
-        }
-        if is_worse {
-            parts.push("something became worse than the baseline".to_owned());
-        }
-        if open > 0 {
-            parts.push(format!("{open} of {rows} are inconclusive"));
-        }
+        let parts = [
+            (failing > 0).then(|| format!("{failing} of {rows} fail")),
+            is_worse.then(|| "something became worse than the baseline".to_owned()),
+            (open > 0).then(|| format!("{open} of {rows} are inconclusive")),
+        ];
         match class {
             "pass" => format!("pass: nothing of {rows} fails or is inconclusive"),
             "refused" => format!("nothing was tested: none of {rows} passes or fails"),
-            word => format!("{word}: {}", parts.join(", ")),
+            word => format!("{word}: {}", joined(parts.into_iter().flatten(), ", ")),
         }
     }
 

@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 use serde_json::json;
 
-use crate::report::fields::{self, Shown, Table, grid, object, place, shown, table};
-use crate::report::layout::{Column, Field, Grid, Paint, Pen, wrapped};
+use crate::report::fields::{self, Shown, Table, judged, object, place, shown, table};
+use crate::report::layout::{Column, Field, Grid, Paint, Pen};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 use crate::stress::narrow::{Along, Curve, DRAWS, Point};
@@ -27,11 +27,7 @@ const COLUMNS: &[Shown] = shown!(&Row:
 pub fn table(found: &Stress, pen: Pen) -> String {
     let mut text = String::new();
     let rows: Vec<&Row> = found.rows.iter().collect();
-    let mut grid = grid(&rows, COLUMNS);
-    let holds = rows.iter().map(|row| Field::judged(row.holds(), ["yes", "NO"]));
-    grid.push("holds", holds.collect());
-    grid.fit(pen.width);
-    text.push_str(&grid.render(pen));
+    text.push_str(&judged(&rows, COLUMNS, ("holds", ["yes", "NO"]), |row| row.holds(), pen));
     for row in rows.iter().filter(|row| !row.holds()) {
         let said = if row.is_mostly_skipped() {
             let Row { quantity, skipped, trials, first_skipped, .. } = row;
@@ -41,9 +37,7 @@ pub fn table(found: &Stress, pen: Pen) -> String {
         } else {
             format!("{}: {} at {}", row.quantity, exact(row.worst), row.place)
         };
-        for line in wrapped(&said, pen.width) {
-            let _ = writeln!(text, "{}", pen.paint(Paint::Red, &line));
-        }
+        pen.say(&mut text, Paint::Red, &said);
     }
     text.push('\n');
     single_precision(&mut text, pen, &found.narrow.curves);

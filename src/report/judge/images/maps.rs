@@ -19,13 +19,13 @@ pub const HEAD: f64 = 92.0;
 const FRAMES: usize = 400;
 
 /// Value and colour of the dots of a map.
-pub struct Dots<S, C> {
+pub struct Dots {
     /// Value of a dot without a tile.
     pub none: f64,
     /// Value of a dot from its value so far and from a tile that covers it.
-    pub join: S,
+    pub join: fn(f64, &Tile) -> f64,
     /// Colour of a value.
-    pub colour: C,
+    pub colour: fn(f64) -> [u8; 3],
 }
 
 /// Places of the maps of all channels, side by side.
@@ -63,12 +63,7 @@ impl<'a> Maps<'a> {
     }
 
     /// Draws the map of each channel, with frames of this colour.
-    pub fn draw<S: Fn(f64, &Tile) -> f64, C: Fn(f64) -> [u8; 3]>(
-        &self,
-        sheet: &mut Sheet,
-        frame: RGBAColor,
-        dots: &Dots<S, C>,
-    ) {
+    pub fn draw(&self, sheet: &mut Sheet, frame: RGBAColor, dots: &Dots) {
         let [width, _] = self.size;
         for channel in 0..self.judgement.size.channels {
             let left = GAP + channel as f64 * (width + GAP);
@@ -101,12 +96,7 @@ impl<'a> Maps<'a> {
     }
 
     /// Returns the map of a channel, of the smallest tiles, which do not overlap.
-    fn map<S: Fn(f64, &Tile) -> f64, C: Fn(f64) -> [u8; 3]>(
-        &self,
-        channel: usize,
-        at: Spot,
-        dots: &Dots<S, C>,
-    ) -> Image {
+    fn map(&self, channel: usize, at: Spot, dots: &Dots) -> Image {
         let (judgement, dot) = (self.judgement, dot(self.judgement));
         let columns = judgement.size.columns.div_ceil(dot);
         let mut shown = vec![dots.none; columns * judgement.size.rows.div_ceil(dot)];
@@ -118,7 +108,7 @@ impl<'a> Maps<'a> {
                 }
             }
         }
-        let pixels = shown.into_iter().map(&dots.colour).collect();
+        let pixels = shown.into_iter().map(dots.colour).collect();
         Image { at, size: self.size, columns, pixels }
     }
 }

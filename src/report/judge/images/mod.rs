@@ -2,14 +2,15 @@
 
 pub mod console;
 mod maps;
-pub mod p_values;
+mod p_values;
 mod record;
-pub mod z_map;
+mod z_map;
 
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::record::Verdict;
 use crate::report::fields::{self, Table, table};
+use crate::report::render::palette;
 use crate::report::{Artifact, ReportError};
 
 pub use record::json;
@@ -19,14 +20,8 @@ pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, Rep
     let mut files = vec![Artifact::text("judgement.json", json(judgement)?)];
     if !judgement.tiles.is_empty() {
         files.push(fields::artifact("tiles.csv", &<&Tile>::fields(), &judgement.tiles)?);
-        for (figure, png) in [
-            ("z-map", z_map::png as fn(&Judgement, &str) -> Result<Vec<u8>, String>),
-            ("p-values", p_values::png),
-        ] {
-            let draw = |message| ReportError::Draw { figure: figure.to_owned(), message };
-            let bytes = png(judgement, name).map_err(draw)?;
-            files.push(Artifact { path: format!("{figure}.png").into(), bytes });
-        }
+        files.push(palette::artifact("z-map", |face| z_map::compose(judgement, name, face))?);
+        files.push(palette::artifact("p-values", |face| p_values::compose(judgement, name, face))?);
     }
     Ok(files)
 }

@@ -11,7 +11,7 @@ use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{COLOURS, GREY, ink};
 use crate::report::plots::{Axis, Panel};
-use crate::report::render::palette;
+use numeric::digits::counted;
 
 /// Minimum and maximum number of bins of the histogram; between them one bin per ten tiles.
 const BINS: [usize; 2] = [4, 20];
@@ -25,12 +25,8 @@ const RED: [u8; 3] = [0xB2, 0x18, 0x2B];
 /// Colour of a tile without a p-value.
 const NONE: [u8; 3] = [0xF3, 0xE8, 0xC8];
 
-/// Returns the pictures as one PNG file; `name` is that of the images.
-pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
-    palette::png(|face| compose(judgement, name, face))
-}
-
-fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
+/// Returns the pictures on one sheet; `name` is that of the images.
+pub fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let maps = Maps::new(judgement);
     let all = maps.end() + WIDTH + GAP;
     let mut sheet = Sheet::new(all, HEAD + maps.size[1].max(HEIGHT + 84.0) + 24.0);
@@ -97,8 +93,8 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
     panel.frame(sheet, "");
     for (line, text) in [
         format!(
-            "{all} {}; line and band: uniform, ± 3 standard deviations.",
-            if all == 1 { "tile" } else { "tiles" }
+            "{}; line and band: uniform, ± 3 standard deviations.",
+            counted(all as u64, "tile")
         ),
         "Uniform: nothing was found. A peak at 0: tiles are off.".to_owned(),
         "A peak at 1: less noise than the variance says, or passes shared.".to_owned(),

@@ -6,19 +6,15 @@ use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::sheet::Sheet;
 use crate::report::plots::style::DARK;
-use crate::report::render::{colour, palette};
+use crate::report::render::colour;
 
 /// Number of standard errors at which colours end, to either side.
 const MAX_Z: f64 = 5.0;
 /// Width of the bar of colours with its numbers.
 const BAR: f64 = 76.0;
 
-/// Returns the map as a PNG file; `name` is that of the images.
-pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
-    palette::png(|face| compose(judgement, name, face))
-}
-
-fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
+/// Returns the map; `name` is that of the images.
+pub fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let maps = Maps::new(judgement);
     let height = maps.size[1].max(150.0);
     let all = (maps.end() + BAR).max(560.0);

@@ -5,10 +5,11 @@ use super::views::{NEEDS, SETUP};
 use super::{View, views};
 use crate::record::{Best, CaseRecord, Record, Row, Verdict};
 use crate::report::layout::{Paint, Pen, wrapped};
+use crate::report::lists::{joined, left_out};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, failing};
 use crate::report::run::totals;
-use numeric::digits::short;
+use numeric::digits::{counted, short};
 use std::fmt::Write;
 
 /// Maximum number of suspects that are listed; more are counted.
@@ -44,7 +45,7 @@ fn suspects(text: &mut String, pen: Pen, record: &Record) {
     for suspect in triage.iter().take(SUSPECTS) {
         pen.note(text, &totals::suspect(suspect), ("", Paint::Plain));
     }
-    if let Some(left) = triage.len().checked_sub(SUSPECTS).filter(|&left| left > 0) {
+    if let Some(left) = left_out(triage.len(), SUSPECTS) {
         let _ = writeln!(text, "  and {left} more");
     }
     text.push('\n');
@@ -106,10 +107,10 @@ fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
     let weak: usize = cases.iter().map(|case| rows(case, Verdict::Underpowered)).sum();
     if weak > 0 {
         let word = Verdict::Underpowered.word();
-        let rows = if weak == 1 { "1 row".to_owned() } else { format!("{weak} rows") };
         let note = format!(
-            "{word} {rows}: a check other than the mean, or one that the case allows, has too few draws for a \
-             pass; the column `needed` says how many it takes"
+            "{word} {}: a check other than the mean, or one that the case allows, has too few draws for a \
+             pass; the column `needed` says how many it takes",
+            counted(weak as u64, "row")
         );
         pen.note(text, &note, (word, Paint::Dim));
     }
@@ -148,8 +149,7 @@ pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) 
     let mut notes: Vec<String> = Vec::new();
     let mut say = |row: &Row, channel: &str, what: String| {
         let names = [row.experiment.label.as_str(), &row.experiment.id.control, channel];
-        let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
-        let note = format!("note {}: {what}", names.join(", "));
+        let note = format!("note {}: {what}", joined(names, ", "));
         if !notes.contains(&note) {
             notes.push(note);
         }

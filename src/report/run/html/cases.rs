@@ -29,15 +29,13 @@ pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
     }
 }
 
-fn facts(case: &CaseRecord) -> Vec<(&'static str, String)> {
-    let mut facts = vec![
+fn facts(case: &CaseRecord) -> [(&'static str, String); 6] {
+    [
         ("Problem", case.problem.clone()),
         ("Medium", case.medium.clone()),
         ("File", case.path.clone()),
         ("Draws", totals::draws(case)),
         ("Visible bias", case.visible_bias.filter(words::is_known).map(range).unwrap_or_default()),
         ("Time to verdict, in units of 17 V/ε² draws", words::number(case.pace, 3)),
-    ];
-    facts.retain(|(_, value)| !value.is_empty() && value != words::UNKNOWN);
-    facts
+    ]
 }

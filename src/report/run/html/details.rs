@@ -8,6 +8,7 @@ use crate::report::fields::{Cell, Field, Print, Shown as Column, shown};
 use crate::report::html as page;
 use crate::report::html::drawing::Plot;
 use crate::report::html::words;
+use crate::report::lists::joined;
 use crate::report::run::failures;
 use crate::report::run::summary_csv::Line as Joined;
 use gate::deviation::signed_percent;
@@ -59,8 +60,7 @@ pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
 fn facts<'a>(row: &Row<'a>, shown: &Shown<'a>) -> Vec<(&'static str, String)> {
     let line = shown.line(*row);
     let all = FACTS.iter().map(|column| &shown.fields[column.place]);
-    let known = all.map(|field| (field.head, field.text(&line)));
-    known.filter(|(_, text)| !text.is_empty() && text != "0").collect()
+    all.map(|field| (field.head, field.text(&line))).filter(|(_, text)| text != "0").collect()
 }
 
 /// Line of the table of numbers.
@@ -100,11 +100,8 @@ const TITLES: [&str; 11] = [
 fn numbers(row: &Row) -> Markup {
     let lines = lines(row);
     // The first finding of each of the three quantities is in its own line.
-    let mut open: Vec<&str> = lines
-        .iter()
-        .filter_map(|line| line.finding)
-        .map(|finding| finding.check.as_str())
-        .collect();
+    let own = lines.iter().filter_map(|line| line.finding);
+    let mut open: Vec<&str> = own.map(|finding| finding.check.as_str()).collect();
     let rest = row.findings().filter(|finding| {
         let at = open.iter().position(|check| *check == finding.check && !finding.expects_bias);
         at.map(|at| open.remove(at)).is_none()
@@ -199,14 +196,12 @@ fn says(finding: &Finding) -> Markup {
 fn name(finding: &Finding) -> String {
     let Finding { check, what, channel, .. } = finding;
     let what = if what.ends_with(check.as_str()) { "" } else { what };
-    let names = [check.as_str(), what, channel].into_iter().filter(|name| !name.is_empty());
-    names.collect::<Vec<_>>().join(": ")
+    joined([check.as_str(), what, channel], ": ")
 }
 
 /// Returns a check that passes without a remark, on a line with others.
 fn passing(finding: &Finding) -> String {
-    let words = [finding.check.clone(), finding.p.map_or_else(String::new, p)];
-    words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+    joined([finding.check.clone(), finding.p.map_or_else(String::new, p)], " ")
 }
 
 fn p(p: f64) -> String {

@@ -72,10 +72,10 @@ pub fn legend(record: &Record, shown: &Shown) -> Markup {
                     @let field = &shown.fields[column.place];
                     dt { (field.head) } dd { (field.tip()) }
                 }
-                dt { "(z)" } dd { (NOT_NORMAL.trim_start_matches("(z): ")) }
-                dt { (words::UNKNOWN) } dd { "unknown, or without bound" }
+                dt { "(z)" } dd { "In parentheses: " (NOT_NORMAL.trim_start_matches("(z): ")) "." }
+                dt { (words::UNKNOWN) } dd { "Unknown, or without bound." }
                 dt { "ln E, ln P" }
-                dd { "evidence: a check fails at ln E ≥ " (limit(gate.ln_e_limit)) ", and passes where both ln P ≥ " (limit(gate.ln_p_limit)) }
+                dd { "Evidence: a check fails at ln E ≥ " (limit(gate.ln_e_limit)) ", and passes where both ln P ≥ " (limit(gate.ln_p_limit)) "." }
             }
             p.quiet { "More is in the manual: docs/verdicts.md, docs/columns.md (all columns of the files), docs/failures.md, and "
                 code { "trueflight explain NAME" } " for each estimator, medium and check." }

@@ -8,6 +8,7 @@ use crate::record::{Compared, Record, Row, Score, Verdict};
 use crate::report::html as page;
 use crate::report::html::drawing;
 use crate::report::html::words;
+use crate::report::lists::grouped;
 use crate::report::plots::style::{GREY, Marker, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
 use crate::report::run::failures::{self, Failure, failing};
@@ -16,12 +17,9 @@ use gate::deviation::signed_percent;
 /// Maximum number of cards; the table has all failures.
 const MAX_CARDS: usize = 12;
 
-/// Failures of one check of an estimator of a case.
-struct Group<'a>(Vec<Failure<'a>>);
-
 /// Returns the cards of a verdict.
 pub fn section(record: &Record, verdict: Verdict, title: &str) -> Markup {
-    let groups = groups(failing(record, verdict));
+    let groups = grouped(failing(record, verdict), |one, other| key(one) == key(other));
     html! {
         @if !groups.is_empty() {
             section.failing aria-labelledby=(verdict.word()) {
@@ -33,26 +31,17 @@ pub fn section(record: &Record, verdict: Verdict, title: &str) -> Markup {
     }
 }
 
-fn groups(failures: Vec<Failure<'_>>) -> Vec<Group<'_>> {
-    let mut groups: Vec<Group> = Vec::new();
-    for failure in failures {
-        match groups.iter_mut().find(|group| key(&group.0[0]) == key(&failure)) {
-            Some(group) => group.0.push(failure),
-            None => groups.push(Group(vec![failure])),
-        }
-    }
-    groups
-}
-
 /// Returns what the failures of a group share: case, estimator, check.
 fn key<'a>(one: &Failure<'a>) -> [&'a str; 3] {
     [&one.row.case.name, &one.row.experiment.label, one.check()]
 }
 
-fn card(Group(failures): &Group) -> Markup {
+/// Returns the card of failures of one check of an estimator of a case.
+fn card(failures: &[Failure]) -> Markup {
     let first = &failures[0];
     let (row, check) = (first.row, first.check());
     let others = failures.len() - 1;
+    let label = format!("{}, {}: measured over theory", row.case.name, first.experiment());
     html! {
         article {
             h3 {
@@ -64,20 +53,11 @@ fn card(Group(failures): &Group) -> Markup {
                 (first.reason()) " (" (first.place()) ")"
                 @if others > 0 { span.quiet { ", and " (others) " more of this estimator" } }
             }
-            @if let Some(sheet) = figure(first) { (drawing::inline(&sheet, &label(first))) }
+            @if let Some(sheet) = figure(first) { (drawing::inline(&sheet, &label)) }
             (page::command(row.next_command()))
             (page::causes(&failures::causes(&row)))
         }
     }
-}
-
-fn label(failure: &Failure) -> String {
-    format!("{}, {}: measured over theory", failure.row.case.name, failure.experiment())
-}
-
-/// Returns the quantity of a plot.
-fn quantity(check: &str) -> Score {
-    Score::ALL.into_iter().find(|score| score.quantity() == check).unwrap_or(Score::Mean)
 }
 
 const PASS: RGBAColor = ink(0x17, 0x80, 0x4A);
@@ -87,7 +67,8 @@ const FAIL: RGBAColor = ink(0xB3, 0x12, 0x1D);
 /// without at least one measured value.
 fn figure(failure: &Failure) -> Option<Sheet> {
     let row = failure.row;
-    let score = quantity(failure.check());
+    let of_check = |score: &Score| score.quantity() == failure.check();
+    let score = Score::ALL.into_iter().find(of_check).unwrap_or(Score::Mean);
     let name = score.quantity();
     let along = row.experiment.swept().and(row.case.sweep.as_ref());
     let is_shown = |other: &Row| {

@@ -9,8 +9,9 @@ use crate::record::{Record, Verdict};
 use crate::report::html as page;
 use crate::report::html::drawing;
 use crate::report::html::words;
+use crate::report::lists::joined;
 use crate::report::run::totals::{self, VERDICTS};
-use numeric::digits::{percent, range, short, time};
+use numeric::digits::{counted, percent, range, short, time};
 
 /// Maximum number of suspects and of notes.
 const MAX_LISTED: usize = 20;
@@ -42,8 +43,8 @@ pub fn section(record: &Record) -> Markup {
             (page::command(Some(("command", &record.timing.command))))
             nav aria-label="On this page" {
                 @if record.comparison.is_some() { a href="#changes" { "Since the baseline" } }
-                a href="#cases" { (counted(record.results.cases.len(), "case")) " with plots" }
-                a href="#experiments" { (counted(verdict.rows, "experiment")) }
+                a href="#cases" { (counted(record.results.cases.len() as u64, "case")) " with plots" }
+                a href="#experiments" { (counted(verdict.rows as u64, "experiment")) }
                 a href="#facts" { "The run" }
                 a href="#legend" { "Legend" }
             }
@@ -52,6 +53,10 @@ pub fn section(record: &Record) -> Markup {
             div {
                 section aria-labelledby="map" {
                     h2 #map { "Verdicts" }
+                    p.quiet {
+                        "A cell is an experiment, and leads to its row."
+                        @if map.is_dense { " Those of one estimator are side by side." }
+                    }
                     (map.shown)
                 }
                 @if !map.is_dense { (open) }
@@ -64,11 +69,6 @@ pub fn section(record: &Record) -> Markup {
     }
 }
 
-/// Returns a number with its noun.
-fn counted(number: usize, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
-}
-
 /// Returns version, date, duration and machine.
 fn origin(record: &Record) -> String {
     let (results, timing) = (&record.results, &record.timing);
@@ -78,7 +78,7 @@ fn origin(record: &Record) -> String {
         format!("{} on {} threads ({})", time(timing.seconds), timing.threads, timing.level),
         format!("seed {}", results.seed),
     ];
-    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ")
+    joined(parts, " · ")
 }
 
 fn distribution(record: &Record) -> Markup {
@@ -89,7 +89,7 @@ fn distribution(record: &Record) -> Markup {
                 h2 #scores { "Differences from theory" }
                 p.quiet {
                     "Bars: all z-scores. Curve: the normal distribution of correct estimators. Grey: where 99 of 100 bars would end "
-                    "if scores were independent. Those of one experiment are not, so a red bar near 0 is no failure."
+                    "if scores were independent. Those of one experiment are not, so an orange bar near 0 is no failure."
                 }
                 (drawing::inline(&scores::figure(&all), "Histograms of the z-scores of means, variances and lookups with the normal curve"))
             }
@@ -103,34 +103,23 @@ pub fn facts(record: &Record) -> Markup {
     let gate = &results.gate;
     let biases = results.cases.iter().filter_map(|case| case.visible_bias.filter(words::is_known));
     let visible = biases.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
-    let known = |value: Option<String>| value.unwrap_or_default();
-    let cut = |what: &str, is_so: bool| if is_so { what.to_owned() } else { String::new() };
-    let mut facts = vec![
+    let worst_bias = gate.worst_bias.filter(|bias| bias.is_finite()).map(percent);
+    let assumed = (gate.variance_assumed > 0).then(|| gate.variance_assumed.to_string());
+    let cut = |is_so: bool, by: &str| if is_so { by.to_owned() } else { String::new() };
+    let by_time = "by a limit of time, or interrupted (then `trueflight run --resume` with its folder goes on): other machines will differ";
+    let facts = [
         ("α, the probability of any false alarm", short(results.alpha, 3)),
         ("α is shared by", format!("{} scalars, {} distributions", gate.scalars, gate.laws)),
         ("β, the probability to miss a bias of ε", short(gate.beta, 3)),
-        ("Largest evidence", known(strongest(record))),
+        ("Largest evidence", strongest(record).unwrap_or_default()),
         ("ln of the mean e-value", words::number(gate.ln_mean_e, 3)),
-        ("Visible bias of a mean, as planned", known(visible.map(range))),
-        (
-            "No pass leaves room for a bias above",
-            known(gate.worst_bias.filter(|b| b.is_finite()).map(percent)),
-        ),
-        (
-            "Passes with the variance assumed",
-            known((gate.variance_assumed > 0).then(|| gate.variance_assumed.to_string())),
-        ),
-        (
-            "Cut short",
-            cut(
-                "by a limit of time, or interrupted (then `trueflight run --resume` with its folder goes on): other machines will differ",
-                results.cut_by_time,
-            ),
-        ),
-        ("Cut short", cut("by the budget of draws", results.cut_by_budget)),
+        ("Visible bias of a mean, as planned", visible.map(range).unwrap_or_default()),
+        ("No pass leaves room for a bias above", worst_bias.unwrap_or_default()),
+        ("Passes with the variance assumed", assumed.unwrap_or_default()),
+        ("Cut short", cut(results.cut_by_time, by_time)),
+        ("Cut short", cut(results.cut_by_budget, "by the budget of draws")),
         ("Random numbers", results.streams.clone()),
     ];
-    facts.retain(|(_, value)| !value.is_empty() && value != words::UNKNOWN);
     html! {
         section aria-labelledby="facts" {
             h2 #facts { "The run" }

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 
 use crate::record::{CaseRecord, Digits, ExperimentRecord, Record, Row, Verdict};
 use crate::report::html::words;
+use crate::report::lists::grouped;
 
 /// Number of lines above which the map is dense.
 const CROWD: usize = 30;
@@ -29,8 +30,12 @@ pub fn map(record: &Record) -> Map {
     let all: Vec<Vec<Line>> = cases.iter().map(lines).collect();
     let is_dense = all.iter().map(Vec::len).sum::<usize>() > CROWD;
     let mut last = "";
-    let blocks = cases.iter().zip(&all).enumerate().map(|(place, (case, lines))| {
-        let (folder, name) = case.name.rsplit_once('/').unwrap_or(("", &case.name));
+    // Cases of a folder stand together.
+    let placed = grouped(cases.iter().zip(&all).enumerate(), |one, other| {
+        is_dense && folder_and_name(one.1.0).0 == folder_and_name(other.1.0).0
+    });
+    let blocks = placed.into_iter().flatten().map(|(place, (case, lines))| {
+        let (folder, name) = folder_and_name(case);
         let is_new = is_dense && std::mem::replace(&mut last, folder) != folder;
         html! {
             @if is_new { p.folder { (folder) } }
@@ -52,20 +57,19 @@ pub fn map(record: &Record) -> Map {
     Map { is_dense, shown: html! { div.map.dense[is_dense] { @for block in blocks { (block) } } } }
 }
 
+fn folder_and_name(case: &CaseRecord) -> (&str, &str) {
+    case.name.rsplit_once('/').unwrap_or(("", &case.name))
+}
+
 /// Returns the experiments of a case by estimator, each in the order of the sweep.
 fn lines(case: &CaseRecord) -> Vec<Line<'_>> {
-    let mut lines: Vec<(usize, Line)> = Vec::new();
-    for one in &case.experiments {
-        if let Some((_, line)) = lines.iter_mut().find(|line| line.0 == one.listed) {
-            line.cells.push(one);
-            continue;
-        }
-        let control = &one.id.control;
+    let listed = grouped(&case.experiments, |one, other| one.listed == other.listed);
+    let lines = listed.into_iter().map(|cells| {
+        let control = &cells[0].id.control;
         let comma = if control.is_empty() { "" } else { ", control " };
-        let label = format!("{}{comma}{control}", one.label);
-        lines.push((one.listed, Line { label, cells: vec![one] }));
-    }
-    lines.into_iter().map(|(_, line)| line).collect()
+        Line { label: format!("{}{comma}{control}", cells[0].label), cells }
+    });
+    lines.collect()
 }
 
 /// Returns an experiment: a link to its row of the table, that of the worst channel.

@@ -4,6 +4,7 @@
 use maud::{Markup, html};
 
 use crate::record::{Course, Finding};
+use crate::report::lists::joined;
 use crate::report::plots::svg;
 use numeric::digits::{count, short};
 
@@ -95,15 +96,12 @@ pub fn course(course: &Course) -> Markup {
     let [low, high] = ends(values);
     let [from, to] = ends(course.t.iter().copied());
     let view = View { x: [from, to], y: [low.min(0.0), high] };
-    let place = course.at.map(|at| format!("; it fails at t = {}", short(at, 4)));
-    let label = format!("{} along the ray{}", names(&lines), place.as_deref().unwrap_or_default());
-    let caption = format!(
-        "From t = {} to {}, up to {} per length{}: ",
-        short(from, 3),
-        short(to, 3),
-        short(high, 3),
-        place.as_deref().unwrap_or_default()
-    );
+    let place =
+        course.at.map_or_else(String::new, |at| format!("; it fails at t = {}", short(at, 4)));
+    let names = joined(lines.iter().map(|line| &line.name), ", ");
+    let label = format!("{names} along the ray{place}");
+    let [from, to, high] = [from, to, high].map(|end| short(end, 3));
+    let caption = format!("From t = {from} to {to}, up to {high} per length{place}: ");
     let marks = html! {
         path.mark d={ "M0 " (view.height(0.0)) "H400" } {}
         @if let Some(at) = course.at { path.limit d={ "M" (view.place([at, 0.0])[0]) " 0V120" } {} }
@@ -119,7 +117,7 @@ fn figure(
     (view, along): (&View, &str),
 ) -> Markup {
     let ends = [view.x, view.y].concat().into_iter().map(|end| short(end, 4));
-    let range = ends.chain([along.to_owned()]).collect::<Vec<_>>().join(" ");
+    let range = joined(ends.chain([along.to_owned()]), " ");
     html! {
         figure.spark {
             svg viewBox="0 0 400 120" role="img" aria-label=(label) data-view=(range) {
@@ -133,10 +131,6 @@ fn figure(
             } }
         }
     }
-}
-
-fn names(lines: &[Line]) -> String {
-    lines.iter().map(|line| line.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
 fn draws(draws: f64) -> String {

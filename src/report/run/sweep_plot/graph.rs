@@ -2,13 +2,13 @@
 //! are the best constant σ̂ of each series: filled where the figure of merit is largest, hollow where it reaches 90 %
 //! of its limit.
 
-use crate::record::Best;
-use crate::record::{Compared, CurvePoint, Row};
+use crate::record::{Best, Compared, CurvePoint, Row};
+use crate::report::lists::joined;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
-use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side};
+use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side, smallest_step};
 use crate::report::plots::series::Series;
-use crate::report::plots::style::{Marker, PAPER, ink};
+use crate::report::plots::style::{DARK, Marker, PAPER};
 use crate::report::plots::{Panel, Sheet};
 use crate::report::run::sweep_plot::names::{self, Course};
 use numeric::digits::short;
@@ -61,7 +61,7 @@ impl Graph {
         let mut points = points(&panel, &quantity, series);
         let spots: Vec<[f64; 2]> = points.iter().map(|point| point.spot).collect();
         let swept = points.iter().filter(|point| !series[point.series].is_fixed());
-        let gap = gap(swept.map(|point| point.spot[0]).collect());
+        let gap = smallest_step(swept.map(|point| point.spot[0])).min(100.0);
         let shifts = side_by_side(&spots, APART, 0.4 * gap);
         let is_moved = shifts.iter().any(|&shift| shift != 0.0);
         points.iter_mut().zip(shifts).for_each(|(point, shift)| point.spot[0] += shift);
@@ -129,7 +129,6 @@ impl Graph {
         names::draw(face, sheet, [left, top, right, bottom], &courses);
     }
 
-    /// Returns the letter of the panel.
     fn letter(&self) -> char {
         self.head.chars().nth(1).unwrap_or_default()
     }
@@ -143,7 +142,7 @@ pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
     let mut notes = overlap::notes(&classes, &names);
     let letters = |test: &dyn Fn(&Graph) -> bool| -> String {
         let letters = graphs.iter().filter(|graph| test(graph)).map(Graph::letter);
-        letters.map(String::from).collect::<Vec<_>>().join(", ")
+        joined(letters.map(String::from), ", ")
     };
     let moved = letters(&|graph| graph.is_moved);
     if !moved.is_empty() {
@@ -210,15 +209,6 @@ fn tip(row: &Row, quantity: &Quantity, values: Compared) -> String {
     format!("{}: {} {}{deviation}{theory}", row.name(), quantity.title, value.unwrap_or_default())
 }
 
-/// Returns the smallest horizontal distance between points that do not lie above each other.
-fn gap(mut places: Vec<f64>) -> f64 {
-    places.sort_by(f64::total_cmp);
-    let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);
-    steps.fold(100.0, f64::min)
-}
-
-const RIM: plotters::style::RGBAColor = ink(0x22, 0x22, 0x22);
-
 /// Returns whether the star of a best σ̂ is hollow, for the figure of merit has no maximum there; `None` for no star.
 fn is_hollow(best: Option<&Best>) -> Option<bool> {
     let is_drawn = |best: &Best| best.limit.is_some() || best.is_optimum();
@@ -237,7 +227,7 @@ pub fn draw_optima(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[
         };
         let drop = vec![spot, [spot[0], panel.bottom]];
         sheet.dashed(drop, &[1.5, 3.0], 1.2, one.style.colour.mix(0.8));
-        Marker::Star.draw(sheet, spot, 9.0, RIM);
+        Marker::Star.draw(sheet, spot, 9.0, DARK);
         if is_hollow {
             Marker::Star.fill(sheet, spot, 7.5, one.style.colour);
             Marker::Star.fill(sheet, spot, 4.6, PAPER);
@@ -248,13 +238,10 @@ pub fn draw_optima(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[
         }
     }
     let key = |is_hollow, words| Key { marker: Marker::Star, is_hollow, words };
-    let keys: Vec<Key> = [
-        filled.then(|| key(false, "predicted optimum")),
-        hollow.then(|| key(true, "90 % of the limit")),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    let keys = [(filled, false, "predicted optimum"), (hollow, true, "90 % of the limit")];
+    let keys =
+        keys.into_iter().filter(|known| known.0).map(|(_, hollow, words)| key(hollow, words));
+    let keys: Vec<Key> = keys.collect();
     legend::keys(face, sheet, [panel.right, panel.top - 15.0], &keys);
 }
 
@@ -275,6 +262,6 @@ pub fn note_on_optima(series: &[Series]) -> Option<String> {
             None => Some(format!("{label}: {} at σ\u{302} = {at}{outside}", best.kind)),
         }
     });
-    let said: Vec<String> = said.collect();
-    (!said.is_empty()).then(|| format!("(c), best σ\u{302}: {}", said.join("; ")))
+    let said = joined(said, "; ");
+    (!said.is_empty()).then(|| format!("(c), best σ\u{302}: {said}"))
 }
