@@ -65,7 +65,7 @@ pub struct ExperimentRecord {
     pub shadow_lookups: Option<f64>,
     /// Predicted probabilities `P(0), P(1), …` of the number of lookups of one draw; empty if unknown or longer than 100.
     pub lookups_pmf: Vec<f64>,
-    /// The share of the ray on which `w ≤ 2σ_t`, the stability condition, holds.
+    /// The share of the ray on which the variance stays bounded, `σ̂ E[(1 − W)²] ≤ 2σ_t`.
     pub stable_share: Option<f64>,
     /// The smallest p-value of the tests of distributions.
     pub p_law: Option<f64>,

@@ -56,7 +56,7 @@ table! {
         "predicted_skewness" ["skewness", "", Fixed(3)]: "Skewness of a draw in theory" = |line| line.predicted_skewness;
         "predicted_fom" ["FoM", "", Fixed(4)]: "Figure of merit in theory" = |line| line.predicted_fom;
         "stable_share" ["stable", "", Percent]:
-            "Share of the ray on which the variance stays bounded, w ≤ 2σ_t" = |line| line.experiment.stable_share;
+            "Share of the ray on which the variance stays bounded, σ̂ E[(1 − W)²] ≤ 2σ_t" = |line| line.experiment.stable_share;
         "best_sampling" ["best σ̂", "1/length", Short(4)]:
             "Constant σ̂ with the largest figure of merit in theory" = |line| line.best_sampling();
         "best_fom" ["best FoM", "", Fixed(4)]: "Figure of merit at the best σ̂" = |line| line.best_fom();

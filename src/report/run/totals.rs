@@ -192,8 +192,8 @@ impl RunVerdict {
                     .to_owned()
             }
             ("pass", Some(bias)) => format!(
-                "Every mean that passes is right to {bias}: a larger bias would have been missed with a probability \
-                 below {}.",
+                "Every mean that passes is right to {bias}: one that is off by more would have passed with a \
+                 probability below {}.",
                 percent(results.gate.beta)
             ),
             ("pass", None) => "Nothing differs from theory by more than chance allows.".to_owned(),

@@ -59,7 +59,7 @@ pub fn read(bytes: &[u8]) -> Result<Pixels, String> {
     if Some(values.len()) != count {
         let found = values.len();
         return Err(format!(
-            "{found} bytes follow its header, not 4 for each of {channels} value(s) of {columns} × {rows} pixels"
+            "{found} bytes follow its header, not 4 for each of {channels} × {columns} × {rows} values"
         ));
     }
     let word = Number::of_width(4, scale > 0.0);

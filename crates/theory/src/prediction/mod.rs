@@ -28,7 +28,7 @@ pub struct Prediction {
     pub covariances: Vec<Covariance>,
     /// The steps of one walk from each distance of a curve to the next.
     pub increments: Vec<Increment>,
-    /// The share of the ray on which the variance stays bounded, `w ≤ 2σ_t`; `None` where the
+    /// The share of the ray on which the variance stays bounded, `σ̂ E[(1 − W)²] ≤ 2σ_t`; `None` where the
     /// estimator has no variance introduction density.
     pub stable_share: Option<f64>,
 }
