@@ -46,7 +46,7 @@ pub struct Judgement {
     /// Comparison with a second stack; `None` if the truth is given.
     pub comparison: Option<Comparison>,
     /// Picture in the channel with the most obvious bias that the claimed variance does not show, with the standard error
-    /// and z of the passes' own spread; `None` if there is none.
+    /// and z of the passes' own spread; `None` without such a bias.
     pub shown: Option<Tile>,
     /// Whole picture, one entry per channel.
     pub whole: Vec<Tile>,

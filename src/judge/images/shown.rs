@@ -17,7 +17,7 @@ use gate::session::plain_limit;
 use gate::session::quantity::VARIANCE_CAP;
 use gate::stats::verdict::Verdict;
 
-/// Minimum number of values whose spread is used.
+/// Minimum number of values for a spread.
 const MIN_VALUES: f64 = 32.0;
 
 /// Returns the undecided picture with the most obvious bias of all channels; its standard error and z are by the

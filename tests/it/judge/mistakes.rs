@@ -1,4 +1,4 @@
-//! Usual mistakes of first users, and what the verdict says of them.
+//! Usual mistakes of first users, and the verdicts that name them.
 
 use trueflight::judge::images::{Claim, Judgement, Level, Options, Picture, Size, Stack, judge};
 use trueflight::report::judge::images::console::block;
