@@ -5,7 +5,7 @@
 //! ```
 //!
 //! `draw` and `lookup` of a candidate are measured in the medium itself, with draws at two σ̂, by processor time. Those of
-//! the first rows are corrected by draws at the advised σ̂. A lookup of a setup costs the median of all candidates. Costs
+//! the first rows are corrected by draws at the advised σ̂, in turn. A lookup of a setup costs the median of all candidates. Costs
 //! are kept in a file for each medium and machine, and measured again on demand.
 
 use std::collections::BTreeMap;
@@ -18,13 +18,13 @@ use serde::{Deserialize, Serialize};
 use super::options::TIMES;
 use crate::case::sweep::Variation;
 use crate::case::{Case, Spec};
-use estimators::DrawBuffer;
+use estimators::{DrawBuffer, Experiment};
 use media::files;
 use numeric::pack;
-use numeric::rng::name_hash;
+use numeric::rng::{Streams, name_hash};
 
 /// Rounds of a measurement at two σ̂, and of a correction.
-const ROUNDS: [u64; 2] = [24, 48];
+const ROUNDS: [usize; 2] = [24, 48];
 /// Shortest time of a round, seconds.
 const MIN_SECONDS: f64 = 1e-4;
 /// Time of all rounds from which on no further round is needed, seconds.
@@ -117,23 +117,30 @@ impl Prices {
         self.given.or_else(|| self.kept(key.to_owned(), || measured(case, at)))
     }
 
-    /// Returns the price of a candidate, corrected by draws at one place; `None` for given costs, and where it cannot be
+    /// Returns prices corrected by draws at one setting of each candidate; `None` for given costs, and where it cannot be
     /// drawn.
-    pub fn at(
-        &mut self,
-        key: &str,
-        case: &Case,
-        (estimator, place): (usize, Variation),
-        price: Price,
-    ) -> Option<Price> {
+    ///
+    /// Candidates are timed in turn, round by round: other work on the machine slows all of them.
+    pub fn corrected(&mut self, wanted: &[Wanted<'_>]) -> Vec<Option<Price>> {
         if self.given.is_some() {
-            return None;
+            return vec![None; wanted.len()];
         }
-        self.kept(format!("{key} at {:?}", place.map(|(_, x)| x)), || {
-            let Timing { seconds, error, lookups } = timed(case, estimator, place, ROUNDS[1])?;
-            let factor = seconds / (price.draw + price.lookup * lookups);
-            Some(Price { draw: price.draw * factor, lookup: price.lookup * factor, error })
-        })
+        let mut timers: Vec<Option<Timer>> = wanted
+            .iter()
+            .map(|wanted| {
+                let is_known = self.known.contains_key(&wanted.key);
+                (!is_known).then(|| Timer::new(wanted.case, wanted.place, ROUNDS[1]))?
+            })
+            .collect();
+        while timers.iter_mut().flatten().fold(false, |any, timer| timer.round() | any) {}
+        for (wanted, timer) in wanted.iter().zip(timers) {
+            let Some(timer) = timer else { continue };
+            let (Timing { seconds, error, lookups }, old) = (timer.timing(), wanted.price);
+            let factor = seconds / (old.draw + old.lookup * lookups);
+            let price = Price { draw: old.draw * factor, lookup: old.lookup * factor, error };
+            self.known.insert(wanted.key.clone(), price);
+        }
+        wanted.iter().map(|wanted| self.known.get(&wanted.key).copied()).collect()
     }
 
     /// Returns a price that is known, or measures it.
@@ -172,6 +179,22 @@ fn file(folder: &Path, spec: &Spec) -> PathBuf {
     folder.join(format!("{:016x}.json", name_hash(&name)))
 }
 
+/// A candidate at one setting, with its price by draws at others.
+pub struct Wanted<'a> {
+    key: String,
+    case: &'a Case,
+    place: (usize, Variation),
+    price: Price,
+}
+
+impl<'a> Wanted<'a> {
+    /// Joins the text of a candidate, a case, the index of the candidate in it and the setting, and its price.
+    pub fn new(text: &str, case: &'a Case, place: (usize, Variation), price: Price) -> Self {
+        let key = format!("{text} at {:?}", place.1.map(|(_, x)| x));
+        Self { key, case, place, price }
+    }
+}
+
 /// Time of a draw at one σ̂.
 struct Timing {
     /// Seconds of a draw.
@@ -184,7 +207,7 @@ struct Timing {
 
 /// Measures a candidate at two places.
 fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option<Price> {
-    let timings = places.into_iter().filter_map(|place| timed(case, estimator, place, ROUNDS[0]));
+    let timings = places.into_iter().filter_map(|place| timed(case, estimator, place));
     let timings: Vec<Timing> = timings.collect();
     let error = timings.iter().fold(0.0, |error: f64, timing| error.max(timing.error));
     let few = timings.first()?;
@@ -199,28 +222,70 @@ fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option
     Some(Price { draw: (few.seconds - lookup * few.lookups).max(0.0), lookup, error })
 }
 
-/// Times a candidate at one place.
-fn timed(case: &Case, estimator: usize, place: Variation, rounds: u64) -> Option<Timing> {
-    let (at, pilots) = (case.at(place).ok()?, case.pilots(1, estimator));
-    let prediction = at.predict(estimator, None, pilots)?;
-    let lookups = prediction.lookups.as_ref()?.mean;
-    let experiment = at.experiment(estimator, pilots).ok()?;
-    let mut buffer = DrawBuffer::new(prediction.channels.len());
-    let mut streams = case.address(1, estimator, place).streams();
-    let mut fill = |times: u32| {
+/// A candidate at one place that is timed in rounds.
+struct Timer {
+    experiment: Box<dyn Experiment>,
+    streams: Streams,
+    buffer: DrawBuffer,
+    /// Times that the buffer is filled in a round.
+    fills: u32,
+    /// Maximum number of rounds.
+    rounds: usize,
+    /// Seconds of a draw in each round.
+    seconds: Vec<f64>,
+    /// Lookups of a draw in theory.
+    lookups: f64,
+}
+
+impl Timer {
+    /// Prepares a candidate; `None` where it cannot be drawn.
+    fn new(case: &Case, (estimator, place): (usize, Variation), rounds: usize) -> Option<Self> {
+        let (at, pilots) = (case.at(place).ok()?, case.pilots(1, estimator));
+        let prediction = at.predict(estimator, None, pilots)?;
+        let mut timer = Self {
+            experiment: at.experiment(estimator, pilots).ok()?,
+            streams: case.address(1, estimator, place).streams(),
+            buffer: DrawBuffer::new(prediction.channels.len()),
+            fills: 1,
+            rounds: 2,
+            seconds: Vec::new(),
+            lookups: prediction.lookups.as_ref()?.mean,
+        };
+        // The first buffer maps memory.
+        while timer.round() {}
+        let seconds = timer.seconds[1].max(1e-12) * DRAWS as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1024
+        let fills = (MIN_SECONDS / seconds).ceil().clamp(1.0, 1024.0) as u32;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 3 to 64
+        let enough = (ENOUGH / seconds).clamp(3.0, 64.0) as usize;
+        Some(Self { fills, rounds: rounds.min(enough), seconds: Vec::new(), ..timer })
+    }
+
+    /// Times another round, unless there were enough.
+    fn round(&mut self) -> bool {
+        if self.seconds.len() >= self.rounds {
+            return false;
+        }
         let begin = ThreadTime::now();
-        (0..times).for_each(|_| experiment.fill(&mut streams, DRAWS, &mut buffer));
-        begin.elapsed().as_secs_f64() / (f64::from(times) * DRAWS as f64)
-    };
-    // The first buffer maps memory.
-    fill(1);
-    let seconds = fill(1).max(1e-12) * DRAWS as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to 1024
-    let times = (MIN_SECONDS / seconds).ceil().clamp(1.0, 1024.0) as u32;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 3 to 64
-    let rounds = rounds.min((ENOUGH / seconds).clamp(3.0, 64.0) as u64);
-    let (seconds, error) = fast((0..rounds).map(|_| fill(times)).collect());
-    Some(Timing { seconds, error, lookups })
+        for _ in 0..self.fills {
+            self.experiment.fill(&mut self.streams, DRAWS, &mut self.buffer);
+        }
+        let draws = f64::from(self.fills) * DRAWS as f64;
+        self.seconds.push(begin.elapsed().as_secs_f64() / draws);
+        true
+    }
+
+    fn timing(self) -> Timing {
+        let (seconds, error) = fast(self.seconds);
+        Timing { seconds, error, lookups: self.lookups }
+    }
+}
+
+/// Times a candidate at one place.
+fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
+    let mut timer = Timer::new(case, (estimator, place), ROUNDS[0])?;
+    while timer.round() {}
+    Some(timer.timing())
 }
 
 /// Returns the lower quartile of the times of rounds, and its relative error: other work only adds time.

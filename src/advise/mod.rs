@@ -138,7 +138,8 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
     let found = parallel::map(&study.families(), |family| Row::new(&study, &study.best(family)?));
     let mut rows: Vec<Row> = found.into_iter().flatten().collect();
     row::rank(&mut rows);
-    rows.iter_mut().take(CORRECTED).for_each(|row| row.correct(&mut study, &mut prices));
+    let first = rows.len().min(CORRECTED);
+    row::correct(&mut rows[..first], &mut study, &mut prices);
     let mut profiles = Vec::new();
     // Over several rays, the best σ̂ at a place differs from ray to ray.
     for is_weight in [true, false].into_iter().filter(|_| rays.len() == 1) {

@@ -2,7 +2,7 @@
 
 use super::Target;
 use super::candidates;
-use super::costs::Prices;
+use super::costs::{Prices, Wanted};
 use super::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
 use super::study::{Best, Score, Study};
 use crate::case::sweep::{Variation, What};
@@ -154,19 +154,6 @@ impl Row {
         (self.goal, self.score) = (goal, score);
     }
 
-    /// Corrects the price by draws at the advised setting, unless prices are given.
-    pub fn correct(&mut self, study: &mut Study, prices: &mut Prices) {
-        let (candidate, case) = (self.candidate, &study.cases[study.cases.len() / 2]);
-        let Some(old) = study.prices[candidate] else { return };
-        let at = (candidate, self.setting);
-        let Some(price) = prices.at(&study.texts[candidate], case, at, old) else { return };
-        study.prices[candidate] = Some(price);
-        if let Some(score) = study.score_of_all(candidate, self.setting) {
-            self.cost_error = price.error;
-            self.weigh(score, study.request.target);
-        }
-    }
-
     /// Returns the draws to the target error, or within the budget.
     pub fn draws(&self) -> f64 {
         if self.score.cost > 0.0 { (self.time / self.score.cost).ceil() } else { 1.0 }
@@ -196,6 +183,27 @@ fn lines(text: &str, constant: Option<f64>, factor: Option<f64>) -> String {
     let constant = constant.map(|value| format!("sampling = {}\n", number(value)));
     let factor = factor.map(|factor| format!("sweep.sampling-scale = [{}]\n", number(factor)));
     format!("{}estimators = [{{ {text} }}]", constant.or(factor).unwrap_or_default())
+}
+
+/// Corrects the prices of rows by draws at their advised settings, unless prices are given.
+pub fn correct(rows: &mut [Row], study: &mut Study, prices: &mut Prices) {
+    let case = &study.cases[study.cases.len() / 2];
+    let (mut wanted, mut priced) = (Vec::new(), Vec::new());
+    for row in rows {
+        let Some(price) = study.prices[row.candidate] else { continue };
+        let place = (row.candidate, row.setting);
+        wanted.push(Wanted::new(&study.texts[row.candidate], case, place, price));
+        priced.push(row);
+    }
+    let found = prices.corrected(&wanted);
+    for (row, price) in priced.into_iter().zip(found) {
+        let Some(price) = price else { continue };
+        study.prices[row.candidate] = Some(price);
+        if let Some(score) = study.score_of_all(row.candidate, row.setting) {
+            row.cost_error = price.error;
+            row.weigh(score, study.request.target);
+        }
+    }
 }
 
 /// Sorts rows by group and goal, and marks ties.

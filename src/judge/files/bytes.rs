@@ -7,7 +7,7 @@ pub(super) enum Mistaken {
     Single,
     /// Numbers of 8 bytes.
     Double,
-    /// Numbers whose first byte is the highest, with the first of them as it was read.
+    /// Numbers with the highest byte first, and the first of them as it was read.
     Swapped(f64),
 }
 

@@ -26,16 +26,16 @@ pub(super) fn decide(judgement: &mut Judgement, stack: &Stack, pixels: &Pixels, 
                 by_itself(judgement, shown)
             ),
         );
-        failing.push(
-            "of pixels that are hit or missed the variance moves with the mean; the mean is not judged by that variance: \
-             give a range, too"
-                .to_owned(),
-        );
+        failing.push(format!(
+            "of pixels that are hit or missed the variance moves with the mean; the mean is not judged by that variance{}",
+            ranged(claim)
+        ));
     } else if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0 && is_small) {
         failing.push(format!(
-            "what stands out most, {}: {} (not judged by that variance; give a range, too)",
+            "what stands out most, {}: {} (not judged by that variance{})",
             place(judgement, tile),
-            off(judgement, tile)
+            off(judgement, tile),
+            ranged(claim)
         ));
     }
     failing.extend(means_off(judgement, judgement.worst.first()));
@@ -135,7 +135,13 @@ fn means_open(judgement: &Judgement, is_flat: bool) -> Vec<String> {
     let (wholes, tiles) = (undecided(&judgement.whole), undecided(&judgement.tiles));
     let whole = wholes.first().map(|whole| {
         let more = more(judgement, &wholes);
-        format!("the picture may be off {}; {more}", bias(whole))
+        // Without it more passes are asked to exclude a smaller bias.
+        let asked = whole
+            .needed
+            .and(whole.tolerance)
+            .map(|tolerance| format!(" with --tolerance {}", short(tolerance, 3)));
+        let asked = asked.unwrap_or_default();
+        format!("the picture may be off {}; {more}{asked}", bias(whole))
     });
     let tile = tiles.first().map(|tile| {
         format!(
@@ -152,6 +158,15 @@ fn means_open(judgement: &Judgement, is_flat: bool) -> Vec<String> {
         "if values never vary, as in an analog furnace, say so by --variance 0".to_owned();
     let constant = Some(constant).filter(|_| is_flat && (whole.is_some() || tile.is_some()));
     whole.into_iter().chain(tile).chain(constant).collect()
+}
+
+/// Returns the advice on a range by which a mean is judged whatever its variance is.
+fn ranged(claim: &Claim) -> &'static str {
+    match claim.range {
+        None => "; give a range, too",
+        Some([low, high]) if low.is_finite() && high.is_finite() => "",
+        Some(_) => "; give a range with two finite ends",
+    }
 }
 
 /// Returns the advice on the size of tiles: the smallest from which on all tiles pass, if there is one.

@@ -64,8 +64,12 @@ fn a_biased_picture_of_hits_names_the_mean_before_the_variance() {
     assert!(reason.contains("by the passes' own spread; the variance is too small"), "{reason}");
     assert!(found.likely()[0].contains("the mean is high, the variance is high"));
     assert!(found.is_unjudged() && found.shown.is_some());
+    assert!(reason.contains("give a range, too"), "{reason}");
     let text = block(&found, "x", 400);
     assert!(!text.contains("0 fail") && text.matches("not judged").count() >= 2, "{text}");
+    let open_range = Claim { range: Some([0.0, f64::INFINITY]), ..exact() };
+    let found = judged(hits(1, 256, 1.15), &open_range);
+    assert!(!found.reason.contains("a range, too"), "{}", found.reason);
     // By another stack, and for correct passes.
     let by_stack =
         Claim { variance_stack: Some(stack(hits(2, 256, 1.0))), ..Claim::of_truth(image(hit)) };
@@ -75,6 +79,18 @@ fn a_biased_picture_of_hits_names_the_mean_before_the_variance() {
     for seed in 0..10 {
         let found = judged(hits(10 + seed, 64, 1.0), &exact());
         assert!(found.shown.is_none() && found.verdict != Verdict::Fail, "{}", found.reason);
+    }
+}
+
+/// Without a tolerance ε is what the passes resolve, and a twentieth of correct pictures is undecided.
+#[test]
+fn an_undecided_picture_is_told_passes_and_their_tolerance() {
+    let found = (0..60).map(|seed| judged(hits(100 + seed, 16, 1.0), &exact()).reason);
+    let undecided: Vec<String> =
+        found.filter(|reason| reason.contains("the picture may")).collect();
+    assert!(!undecided.is_empty());
+    for reason in undecided {
+        assert!(reason.contains(" passes in place of 16 with --tolerance 0.0"), "{reason}");
     }
 }
 
