@@ -11,9 +11,8 @@
 //! directions after a scattering are isotropic, e is a mean over them. Where α varies, S/α and `A_b/α` stand for S
 //! and `A_b`, and `1 − e` for f. Where `S Φ f ≥ 1` the variance may be infinite or finite.
 //!
-//! Where extinctions lie in intervals, α and S are largest where the channel's own extinction is at its upper end and
-//! those of the others are at their lower ends, and α is smallest at the opposite ends: with `n = μ̄ − σ_t` and
-//! `r = σ_t/μ̄`,
+//! Where extinctions lie in intervals, α and S are largest with the channel's own extinction at its upper end and those
+//! of the others at their lower ends. α is smallest at the opposite ends. With `n = μ̄ − σ_t` and `r = σ_t/μ̄`,
 //!
 //! ```text
 //! hero h     α = 2μ̄_λ − μ̄_h − n_λ²/n_h,  S = (a_λ σ_λ)²/(a_h σ_h):  both rise with σ_λ and fall with σ_h
