@@ -20,7 +20,7 @@ const PROBES: usize = 6;
 /// Number of seeds of pilot rays over which a learned σ̂ of a single ray is averaged.
 const SEEDS: u64 = 4;
 /// Factors on the setting of the probes, of which the first is taken that is allowed on all rays.
-const RAISES: [f64; 5] = [1.0, 1.02, 1.1, 1.4, 2.0];
+const RAISES: [f64; 6] = [1.0, 1.002, 1.02, 1.1, 1.4, 2.0];
 /// Relative difference of a mean from the truth that is a bias.
 const BIAS: f64 = 1e-9;
 /// Factor on the value of the first member of a family beyond which another one is not searched to the end.
@@ -165,22 +165,22 @@ impl<'a> Study<'a> {
         case.at(at).ok()?.predict(candidate, None, case.pilots(seed, candidate))
     }
 
-    /// Predicts variance and lookups of a candidate on a ray as [`Study::predict`] does: with a weight at every collision,
-    /// without new integrals.
-    fn scaled(
+    /// Estimates variance and lookups of a candidate on a ray, for searches: with a weight at every collision, without new
+    /// integrals.
+    fn estimate(
         &self,
         candidate: usize,
         at: Variation,
         (ray, seed): (usize, u64),
     ) -> Option<Prediction> {
         let free = self.free[candidate].filter(|_| candidates::weighs(&self.texts[candidate]));
-        let Some((Free { what, scale, .. }, (_, x))) = free.zip(at) else {
-            return self.predict(candidate, at, (ray, seed));
-        };
+        let case = &self.cases[ray];
+        let estimate = |at| case.at(at).ok()?.estimate(candidate, case.pilots(seed, candidate));
+        let Some((Free { what, scale, .. }, (_, x))) = free.zip(at) else { return estimate(at) };
         let key = (candidate, ray, seed);
         let known = self.at_scale.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
         let mut prediction = known.unwrap_or_else(|| {
-            let found = self.predict(candidate, Some((what, scale)), (ray, seed));
+            let found = estimate(Some((what, scale)));
             let mut all = self.at_scale.lock().unwrap_or_else(PoisonError::into_inner);
             all.entry(key).or_insert(found).clone()
         })?;
@@ -285,7 +285,7 @@ impl<'a> Study<'a> {
             }
             let is_missing = Cell::new(false);
             let predict = |place| {
-                let prediction = self.scaled(candidate, at(x), place);
+                let prediction = self.estimate(candidate, at(x), place);
                 is_missing.set(is_missing.get() || prediction.is_none());
                 prediction
             };

@@ -1,5 +1,7 @@
 //! A ray cut into panels on which everything is smooth.
 
+mod even;
+
 use media::Medium;
 use numeric::quadrature::{GaussLegendre, dot, legendre};
 use numeric::sum::Sum;
@@ -46,6 +48,8 @@ pub struct Mesh {
     t: Vec<f64>,
     extinction: Vec<f64>,
     adaptive: bool,
+    /// True if panels do not end at kinks, see [`Mesh::coarse`].
+    is_coarse: bool,
     error: f64,
     /// τ over the support: a closed form may be a sum over thousands of pieces.
     depth: Known,
@@ -127,22 +131,20 @@ impl Mesh {
         let rule = GaussLegendre::new(nodes);
         let legendre = (0..nodes).map(|order| legendre_row(&rule, order)).collect();
         let (panels, t, extinction, edges) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let depth = Known::new(0.0, 0.0);
-        Self { medium, rule, legendre, panels, t, extinction, adaptive, error: 0.0, depth, edges }
-    }
-
-    /// Cuts the support into equal panels of 16 nodes, ignoring the breaks of the medium: a quick look at a field
-    /// of thousands of pieces. The error of integrals on it is not known: it is infinite.
-    pub fn even(medium: Medium, panels: usize) -> Self {
-        let support = medium.support();
-        let at = |i: usize| support.from + support.length() * (i as f64 / panels as f64);
-        let panels = (0..panels).map(|i| Span::new(at(i), at(i + 1))).collect();
-        let bare = Self::without_panels(medium, NODES, false);
-        let mut mesh = Self { panels, error: f64::INFINITY, ..bare };
-        mesh.t = mesh.panels.iter().flat_map(|&panel| mesh.nodes(panel)).collect();
-        mesh.extinction = mesh.medium.extinctions(&mesh.t);
-        mesh.depth = Known::estimated(mesh.integrate(|_, sigma| sigma), f64::INFINITY);
-        mesh
+        let (depth, is_coarse) = (Known::new(0.0, 0.0), false);
+        Self {
+            medium,
+            rule,
+            legendre,
+            panels,
+            t,
+            extinction,
+            adaptive,
+            is_coarse,
+            error: 0.0,
+            depth,
+            edges,
+        }
     }
 
     /// The medium.
@@ -217,14 +219,17 @@ impl Mesh {
         self.refined(cuts, &|_, _| Vec::new())
     }
 
-    /// Places inside the support where panels end: `cuts`, and where a function `kink(t, σ_t)` changes its sign.
+    /// Places inside the support where panels end: `cuts`, and where a function `kink(t, σ_t)` changes its sign. A
+    /// coarse mesh does without the latter.
     pub fn cuts<K: Fn(f64, f64) -> f64>(
         &self,
         mut cuts: Vec<f64>,
         kinks: impl IntoIterator<Item = K>,
     ) -> Vec<f64> {
-        let cut = self.cut(&cuts);
-        cuts.extend(kinks.into_iter().flat_map(|kink| cut.roots(kink)));
+        if !self.is_coarse {
+            let cut = self.cut(&cuts);
+            cuts.extend(kinks.into_iter().flat_map(|kink| cut.roots(kink)));
+        }
         cuts.retain(|&t| self.support().contains_inside(t));
         cuts
     }
