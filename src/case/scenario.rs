@@ -355,7 +355,7 @@ impl<'a> At<'a> {
         Some(Prediction { setup_lookups, ..prediction })
     }
 
-    /// Predicts an experiment as [`At::predict`] does, to about a thousandth, in less time where the medium has many pieces.
+    /// Predicts an experiment as [`At::predict`] does, to a few thousandths, in less time where the medium has many pieces.
     pub fn estimate(&self, estimator: usize, pilots: Address) -> Option<Prediction> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let Some(mesh) = scenario.coarse() else { return self.predict(estimator, None, pilots) };

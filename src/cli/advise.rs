@@ -50,7 +50,7 @@ pub struct Arguments {
 
 /// Advises, writes, prints.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    arguments.out.iter().try_for_each(|out| output::writable(out))?;
+    arguments.out.iter().try_for_each(|out| output::can_write(out))?;
     let source = catalogue::source(&arguments.case);
     let request = arguments.request();
     let found = match source.and_then(|source| Spec::parse(&source, catalogue.own_pages())) {

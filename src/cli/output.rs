@@ -255,6 +255,13 @@ pub fn writable(out: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Fails if files cannot be written into a folder, which need not exist; it is not made before there is something to write.
+pub fn can_write(out: &Path) -> anyhow::Result<()> {
+    let known = out.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let cure = || format!("cannot write into {}; give another folder with --out", out.display());
+    tempfile::tempfile_in(known).map(drop).with_context(cure)
+}
+
 /// Returns the width and the colours of stdout; the width is at least 40 columns.
 pub fn pen(options: &Console) -> Pen {
     let colour = options.color.colours(std::io::stdout().is_terminal());

@@ -11,6 +11,7 @@ use crate::common::{case, differs, failing, none, rows, source};
 use trueflight::advise::search::Kind;
 use trueflight::advise::{Advice, CURVES, Costs, Group, Request, Row, Target, advise};
 use trueflight::case::Spec;
+use trueflight::case::sweep::What;
 use trueflight::catalogue::own_pages;
 
 const LINE: &str = "title = \"a line\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\n";
@@ -107,6 +108,39 @@ fn lines_for_a_case_reproduce_the_rows_and_their_draws_pass() {
         let above = if row.kind == Kind::NearLimit { 1.0501 } else { 1.001 };
         assert!(row.time <= least * above, "{} {} {least}", row.lines, row.time);
     }
+}
+
+#[test]
+fn estimates_in_a_medium_of_many_pieces_are_about_predictions() {
+    let list = "\"ratio\", \"woodcock\", \"next-flight\", \"unidirectional-mis\", { single.rule = \"clamped\" }, \
+        { single.rule = \"terminating\" }, { single = { rule = \"adaptive\", albedo = 0.3 } }, \
+        { double.control.explorers.points = 16 }";
+    let noise = "volume.noise = { extinction = 2, octaves = 9, seed = 3, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }\n\
+        ray = { origin = [-2, 0.3, 0.1], direction = [1, 0, 0], length = 4 }";
+    let text = format!(
+        "title = \"noise\"\n[problem.transmittance]\n{noise}\nsampling = 1\nestimators = [{list}]\n"
+    );
+    let case = case("noise", &text);
+    let mut wrong = Vec::new();
+    for (estimator, sampling) in (0..8).flat_map(|i| [1.1, 2.5, 9.0].map(|sampling| (i, sampling)))
+    {
+        let at = case.at(Some((What::Sampling, sampling))).expect("a place");
+        let pilots = case.pilots(1, estimator);
+        let found = [at.predict(estimator, None, pilots), at.estimate(estimator, pilots)];
+        let found = found.map(|found| {
+            let found = found?;
+            Some([found.channels[0].moments?.variance(), found.lookups?.mean])
+        });
+        assert_eq!(found[0].is_some(), found[1].is_some(), "{estimator} at {sampling}");
+        let [exact, found] = found.map(Option::unwrap_or_default);
+        for (name, i) in [("variance", 0), ("lookups", 1)] {
+            let name = format!("{name} of {estimator} at {sampling}");
+            // The small residual of a control has a larger relative error, the same at every σ̂.
+            let tolerance = if estimator == 7 { 2e-3 } else { 1e-3 };
+            wrong.extend(differs(&name, found[i], exact[i], tolerance));
+        }
+    }
+    none(&wrong);
 }
 
 #[test]
@@ -266,5 +300,20 @@ fn the_command_prints_tables_lines_and_files() {
     assert!(place.read("found/advise.svg").contains("Cost against a constant"));
     let wrong = place.run("advise waves.toml --cost 2us");
     assert_says(&crate::common::place::stderr(&wrong), &["lookup=2us or draw=50ns"]);
-    place.says(2, "advise waves.toml --rays 4 --cost lookup=1us");
+    place.says(2, "advise waves.toml --rays 4 --cost lookup=1us --out wrong");
+    assert!(!place.path().join("wrong").exists(), "a folder of a failed command");
+    let wrong = place.run("advise waves.toml --cost lookup=1us --out waves.toml/below");
+    assert_says(&crate::common::place::stderr(&wrong), &["cannot write into", "another folder"]);
+}
+
+#[test]
+fn an_interrupted_command_leaves_no_folder() {
+    let place = Place::new(&[("grid.toml", &format!("{GRID}rays = {{ random = 1000 }}\n{ANY}"))]);
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("trueflight"));
+    let words = ["advise", "grid.toml", "--cost", "lookup=1us", "--out", "found", "--quiet"];
+    let mut run = command.args(words).current_dir(place.path()).spawn().expect("it starts");
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    run.kill().expect("it is still at work");
+    assert!(!run.wait().expect("it ends").success());
+    assert!(!place.path().join("found").exists(), "a folder of an interrupted command");
 }
