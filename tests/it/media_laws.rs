@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::try_body;
+use crate::common::{predicted, try_body};
 use fearless_simd::Level;
 use trueflight::geometry::{Aabb, Point};
 use trueflight::media::{Body, CATALOGUE, Medium};
@@ -36,7 +36,7 @@ const LINES: [(&str, &str); 17] = [
 ];
 
 /// 3-D forms; those without bounds of their own fill a box, a ball or all of space.
-const VOLUMES: [&str; 23] = [
+const VOLUMES: [&str; 27] = [
     "constant = { extinction = 0.5, bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
     "piecewise-constant = { breaks = [0, 1, 3], values = [1, 0.2], axis = [1, 0, 1] }",
     "piecewise-linear = { knots = [0, 1, 3], values = [1, 0, 0.2], axis = [0, 1, 2] }",
@@ -46,11 +46,17 @@ const VOLUMES: [&str; 23] = [
     "gaussian = { peak = 3, centre = [1.7, 2.1, 2], width = 0.6 }",
     "gaussian = { peak = 3, centre = [1, 2, 2], width = 0.1, \
      bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
+    "gaussian = { peak = 3, centre = 1.7, width = 0.6 }",
+    // Almost level along the second ray.
+    "gaussian = { peak = 9, centre = 2.5, width = 0.04, axis = [1, 2, 1e-9], \
+     bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }",
     "radial = { centre = [2, 2, 2], radius = 1.9, coefficients = [2, -2] }",
     "radial = { centre = [1, 2, 2.5], radius = 2.7, coefficients = [0.1, 2, -3, 1.2] }",
     // (1 − 2x)² touches 0 inside.
     "radial = { centre = [2, 2, 2], radius = 1.5, coefficients = [1, -4, 4] }",
     "sines = { base = 0.8, amplitudes = [0.5, -0.3], vectors = [[1, 2, 3], [0, -9, 4]] }",
+    "sines = { base = 1, amplitudes = [0.4, -0.6], frequencies = [2, 31], phases = [0, 1] }",
+    "sines = { base = 1, amplitudes = [-0.5], frequencies = [7], axis = [1, 2, 1e-9] }",
     "eq21 = {}",
     "noise = { extinction = 2, octaves = 1 }",
     "noise = { extinction = 2, octaves = 3, fade = \"cubic\", frequency = 0.7, seed = 9 }",
@@ -268,6 +274,56 @@ fn majorants_are_never_exceeded() {
                 assert!(value <= highest, "{field}: {value} exceeds {highest} at {p:?}");
             }
         }
+    }
+}
+
+/// Layers along a ray at the cosine 0.6 to their axis are the field along a line whose lengths are divided by it.
+#[test]
+fn layers_have_the_predictions_of_a_line() {
+    let pages = [
+        ("constant = { extinction = 0.5 }", "constant = { extinction = 0.5 }"),
+        (
+            "piecewise-constant = { breaks = [-1, 0.2, 1.7, 3], values = [1, 0.3, 0.6] }",
+            "piecewise-constant = { breaks = [0, 2, 4.5, 6.666666666666667], values = [1, 0.3, 0.6] }",
+        ),
+        (
+            "piecewise-linear = { knots = [-1, 0.2, 3], values = [1, 0.3, 0.6] }",
+            "piecewise-linear = { knots = [0, 2, 6.666666666666667], values = [1, 0.3, 0.6] }",
+        ),
+        (
+            "exponential = { extinction = 0.5, rate = 0.5 }",
+            "exponential = { extinction = 0.8243606353500641, rate = 0.3 }",
+        ),
+        (
+            "gaussian = { peak = 0.9, centre = 0.8, width = 0.6 }",
+            "gaussian = { peak = 0.9, centre = 3, width = 1 }",
+        ),
+        (
+            "sines = { base = 0.5, amplitudes = [0.2, -0.3], frequencies = [2, 5], phases = [2, 9] }",
+            "sines = { base = 0.5, amplitudes = [0.2, -0.3], frequencies = [1.2, 3], phases = [0, 4] }",
+        ),
+    ];
+    let numbers = |field: &str| -> Vec<[Option<f64>; 4]> {
+        let rows = predicted(&format!(
+            "title = \"\"\n[problem.transmittance]\n{field}\nsampling = 1.2\nestimators = [\"woodcock\", \
+             {{ residual-ratio = {{ control.mean = {{}} }} }}, {{ ratio = {{ sampling.local-majorants.segments = 9 }} }}]"
+        ));
+        let lookups = |at: usize| rows[at].experiment.predicted_lookups;
+        let row = |at: usize| {
+            [rows[at].truth, rows[at].predicted_variance, lookups(at), rows[at].predicted_kurtosis]
+        };
+        (0..rows.len()).map(row).collect()
+    };
+    for (layers, line) in pages {
+        let ray = "ray = { origin = [3, 7, -1], direction = [0, 0.8, 0.6], length = 5 }";
+        let in_space = numbers(&format!("volume.{layers}\n{ray}"));
+        let on_line = numbers(&format!("medium.{line}\nspan = [0, 5]"));
+        for (seen, expected) in in_space.as_flattened().iter().zip(on_line.as_flattened()) {
+            let is_near = |(seen, expected): (f64, f64)| (seen - expected).abs() <= 1e-9 * expected;
+            let agrees = seen.zip(*expected).map_or(seen == expected, is_near);
+            assert!(agrees, "{layers}: {in_space:?}, {on_line:?}");
+        }
+        assert!(on_line[0].iter().all(Option::is_some), "{line}: {on_line:?}");
     }
 }
 

@@ -48,6 +48,28 @@ impl Reader {
         let read = move |settings: &Settings| read(settings).map(|f| Arc::new(f) as Arc<Volume>);
         Self { volume: Some(Box::new(read)), ..self }
     }
+
+    /// Adds another form in space beside the layers, for settings that `is_other` recognises. It has no `axis`; `help`
+    /// says how layers are written.
+    #[must_use]
+    pub fn or_volume<F: Field>(
+        self,
+        is_other: impl Fn(&Settings) -> bool + Send + Sync + 'static,
+        read: impl Fn(&Settings) -> Option<F> + Send + Sync + 'static,
+        help: &'static str,
+    ) -> Self {
+        let layers = self.volume;
+        let read = move |settings: &Settings| -> Option<Arc<Volume>> {
+            if !is_other(settings) {
+                return layers.as_ref()?(settings);
+            }
+            if settings.has("axis") {
+                settings.fault("axis", "`axis` has no say here", help);
+            }
+            read(settings).map(|field| Arc::new(field) as Arc<Volume>)
+        };
+        Self { volume: Some(Box::new(read)), ..self }
+    }
 }
 
 /// The pages of media, those of the program's own last.

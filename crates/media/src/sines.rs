@@ -1,17 +1,20 @@
 //! A sum of plane waves about a mean.
 //!
 //! ```text
-//! σ_t(x) = base + Σᵢ amplitudesᵢ · sin(frequenciesᵢ · x + phasesᵢ)   (1-D)
-//! σ_t(p) = base + Σᵢ amplitudesᵢ · sin(vectorsᵢ · p + phasesᵢ)       (3-D)
+//! σ_t(x) = base + Σᵢ amplitudesᵢ · sin(frequenciesᵢ · x + phasesᵢ)   along a line, or layers
+//! σ_t(p) = base + Σᵢ amplitudesᵢ · sin(vectorsᵢ · p + phasesᵢ)       waves of any directions
 //! ```
+//!
+//! In 1-D `x` is the distance `t`; in 3-D, with `frequencies`, it is the height `p·axis`.
 //!
 //! | setting | meaning | unit | default |
 //! |---|---|---|---|
 //! | `base` | the mean, at least the sum of the absolute amplitudes | 1/length | required |
 //! | `amplitudes` | one for each wave, of either sign | 1/length | required |
-//! | `frequencies` | 1-D only: one for each wave | rad/length | required |
-//! | `vectors` | 3-D only: wave vectors `[[x, y, z], …]` | rad/length | required |
+//! | `frequencies` | one for each wave | rad/length | required; in 3-D this or `vectors` |
+//! | `vectors` | 3-D only: wave vectors `[[x, y, z], …]` | rad/length | this or `frequencies` |
 //! | `phases` | one for each wave | rad | zeros |
+//! | `axis` | 3-D with `frequencies` only: the direction of `x`; it is normalised | | `[0, 0, 1]` |
 //! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
 //!
 //! Lookups use `1 ± sin x = 2 sin²(x/2 ± π/4)`, which rounding cannot make negative. Arguments stay below 1e9 rad.
@@ -21,18 +24,20 @@
 //! ∫ sin(φ + ωs) ds = L sin(φ_middle) · sinc(ωL/2)
 //! ```
 //!
-//! with an error below L·(4 base + Σ|amplitudeᵢ φᵢ|)·2.2e-16; the free flight is a bracketed root.
+//! with an error below L·(4 base + Σ|amplitudeᵢ φᵢ|)·2.2e-16, where |φ| is the sum of its terms' sizes; the free flight is a bracketed root.
 //! Quadrature takes a panel for each half period of the fastest wave.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use std::sync::Arc;
 
-use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, body};
+use super::layered::{Heights, Stratified};
+use super::{Facts, Field, Profile, Reader, body};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
 
-/// A wave with a frequency along a ray, or a wave vector in space: `amplitude · sin(frequency · x + phase)`.
+/// A wave with a frequency along a line, or a wave vector in space: `amplitude · sin(frequency · x + phase)`.
+#[derive(Clone)]
 pub struct Wave<K = f64> {
     /// Amplitude, 1/length.
     pub amplitude: f64,
@@ -53,23 +58,26 @@ impl<K> Wave<K> {
 }
 
 /// Waves about a base.
+#[derive(Clone)]
 pub struct Waves<K = f64> {
     base: f64,
     /// `base − Σ|amplitude| ≥ 0`.
     trough: f64,
     parts: Vec<Wave<K>>,
+    /// Sum over the waves of |amplitude| times the size of phases that cancelled at the origin of a ray.
+    cancelled: f64,
 }
 
 impl<K> Waves<K> {
     /// Waves about a base of at least the sum of their absolute amplitudes, 1/length.
     pub fn new(base: f64, parts: Vec<Wave<K>>) -> Self {
         let trough = base - parts.iter().map(|wave| wave.amplitude.abs()).sum::<f64>();
-        Self { base, trough, parts }
+        Self { base, trough, parts, cancelled: 0.0 }
     }
 
     /// The sum at a place, of which `along` returns half the product with a frequency.
     #[inline(always)]
-    fn value<L: Lane>(&self, zero: L, along: impl Fn(&K) -> L) -> L {
+    fn sum<L: Lane>(&self, zero: L, along: impl Fn(&K) -> L) -> L {
         // A loop and not a fold: a closure would be compiled for the least machine.
         let mut sum = zero.each(self.trough);
         for wave in &self.parts {
@@ -78,13 +86,38 @@ impl<K> Waves<K> {
         sum
     }
 
+    /// An upper bound where the product of a frequency and the place has the range `reach`.
+    fn bound(&self, reach: impl Fn(&K) -> Span) -> f64 {
+        let highest = self.parts.iter().fold(self.base, |sum, wave| {
+            let turn = if wave.amplitude < 0.0 { wave.phase + PI } else { wave.phase };
+            let reach = reach(&wave.frequency);
+            let crest = highest_sine(Span::new(reach.from + turn, reach.to + turn));
+            sum + wave.amplitude.abs() * crest
+        });
+        // The arguments of the lookups are rounded, too.
+        highest + 1e-12 * self.base
+    }
+
+    /// The waves along a ray, of which `seen` returns the phase at the origin and the frequency.
+    fn on_ray(&self, seen: impl Fn(&K) -> [f64; 2]) -> Waves {
+        let mut cancelled = 0.0;
+        let parts = self.parts.iter().map(|wave| {
+            let (amplitude, [shift, frequency]) = (wave.amplitude, seen(&wave.frequency));
+            let phase = wave.phase + shift;
+            cancelled += amplitude.abs() * (wave.phase.abs() + shift.abs() - phase.abs());
+            Wave { amplitude, frequency, phase }
+        });
+        let waves = Waves::new(self.base, parts.collect());
+        Waves { cancelled, ..waves }
+    }
+
     /// Half periods of the fastest wave on a length, given the size of a frequency.
     fn half_periods(&self, length: f64, size: impl Fn(&K) -> f64) -> f64 {
         self.parts.iter().fold(0.0f64, |f, wave| f.max(size(&wave.frequency))) * length / PI
     }
 
     /// Reads the settings beside the frequencies or the vectors, one for each wave.
-    fn read(settings: &Settings, frequencies: Option<Vec<K>>) -> Option<Self> {
+    fn read_beside(settings: &Settings, frequencies: Option<Vec<K>>) -> Option<Self> {
         let base = settings.number("base", Domain::NonNegative);
         let amplitudes = settings.numbers("amplitudes", Domain::Finite, 1);
         let phases = settings.optional("phases", |key| settings.numbers(key, Domain::Finite, 1));
@@ -109,41 +142,25 @@ impl<K> Waves<K> {
     }
 }
 
-/// Reads the page.
-pub fn reader() -> Reader {
-    let line = |settings: &Settings| {
-        Waves::read(settings, settings.numbers("frequencies", Domain::Finite, 1))
-    };
-    let volume = |settings: &Settings| {
-        let vectors = settings.triples("vectors");
-        let vectors = vectors.map(|vectors| vectors.into_iter().map(Point).collect());
-        let (waves, bounds) = (Waves::read(settings, vectors), body::read_bounds(settings));
-        Some(Sines { waves: waves?, bounds: bounds? })
-    };
-    Reader::new(&["base", "amplitudes"]).line(line).volume(volume)
-}
+impl Stratified for Waves {
+    const EXTINCTIONS: &'static [&'static str] = &["base", "amplitudes"];
 
-impl Extinction for Waves {
+    fn read(settings: &Settings) -> Option<Self> {
+        Self::read_beside(settings, settings.numbers("frequencies", Domain::Finite, 1))
+    }
+
     #[inline(always)]
-    fn extinction<L: Lane>(&self, t: L) -> L {
-        self.value(
-            t,
+    fn value<L: Lane>(&self, x: L) -> L {
+        self.sum(
+            x,
             #[inline(always)]
-            |frequency| t * (0.5 * frequency),
+            |frequency| x * (0.5 * frequency),
         )
     }
 
-    fn facts(&self) -> Facts<'_> {
-        // Over half a period the square turns by 2π: 12 nodes have an error below 1e-16 of it.
-        let pieces_per_length = self.half_periods(1.0, |frequency| frequency.abs());
-        Facts { panel_nodes: Some(12), pieces_per_length, ..Facts::default() }
-    }
-}
-
-impl OpticalDepth for Waves {
-    fn optical_depth(&self, span: Span) -> Known {
-        let (length, middle) = (span.length(), span.middle());
-        let (mut mean, mut error) = (self.base, 4.0 * self.base);
+    fn integral(&self, x: Span) -> Known {
+        let (length, middle) = (x.length(), x.middle());
+        let (mut mean, mut error) = (self.base, 4.0 * self.base + self.cancelled);
         for Wave { amplitude, frequency, phase } in &self.parts {
             let swing = sinc(0.5 * frequency * length);
             mean += amplitude * (frequency * middle + phase).sin() * swing;
@@ -152,8 +169,25 @@ impl OpticalDepth for Waves {
         Known::new(length * mean, length * error * f64::EPSILON)
     }
 
-    fn breaks(&self, span: Span) -> Vec<f64> {
-        span.even_cuts(self.half_periods(span.length(), |frequency| frequency.abs()).ceil())
+    fn highest(&self, x: Span) -> f64 {
+        self.bound(|frequency| {
+            let [from, to] = [x.from * frequency, x.to * frequency];
+            Span::new(from.min(to), from.max(to))
+        })
+    }
+
+    fn features(&self, x: Span) -> Vec<f64> {
+        x.even_cuts(self.half_periods(x.length(), |frequency| frequency.abs()).ceil())
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        // Over half a period the square turns by 2π: 12 nodes have an error below 1e-16 of it.
+        let pieces_per_length = self.half_periods(1.0, |frequency| frequency.abs());
+        Facts { panel_nodes: Some(12), pieces_per_length, ..Facts::default() }
+    }
+
+    fn along(&self, &Heights { start, slope, .. }: &Heights, _: Span) -> Option<Self> {
+        Some(self.on_ray(|frequency| [frequency * start, frequency * slope]))
     }
 }
 
@@ -168,6 +202,16 @@ pub fn highest_sine(angles: Span) -> f64 {
     if crest <= angles.to { 1.0 } else { angles.from.sin().max(angles.to.sin()) }
 }
 
+/// Reads the page.
+pub fn reader() -> Reader {
+    // `vectors` are missing where nothing chooses layers.
+    let is_in_space = |settings: &Settings| {
+        settings.has("vectors") || !(settings.has("frequencies") || settings.has("axis"))
+    };
+    let help = "it is for layers: give `frequencies` in place of `vectors`, or leave `axis` out";
+    Reader::layered::<Waves>().or_volume(is_in_space, Sines::read, help)
+}
+
 /// Plane waves as a volume.
 pub struct Sines {
     waves: Waves<Point>,
@@ -178,6 +222,22 @@ impl Sines {
     /// Plane waves within bounds.
     pub fn new(waves: Waves<Point>, bounds: Bounds) -> Self {
         Self { waves, bounds }
+    }
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let vectors = match (settings.has("vectors"), settings.has("frequencies")) {
+            (true, false) => settings.triples("vectors"),
+            (both, _) => {
+                let found = if both { "both" } else { "neither" };
+                let message = format!("{found} of `vectors` and `frequencies`");
+                let help = "give `vectors` for waves in space, or `frequencies` for layers across an `axis`";
+                settings.fault("vectors", message, help);
+                None
+            }
+        };
+        let vectors = vectors.map(|vectors| vectors.into_iter().map(Point).collect());
+        let (waves, bounds) = (Waves::read_beside(settings, vectors), body::read_bounds(settings));
+        Some(Self::new(waves?, bounds?))
     }
 }
 
@@ -193,7 +253,7 @@ impl Field for Sines {
 
     #[inline(always)]
     fn value<L: Lane>(&self, p: [L; 3]) -> L {
-        self.waves.value(
+        self.waves.sum(
             p[0],
             #[inline(always)]
             |vector| vector.along(p) * 0.5,
@@ -201,24 +261,12 @@ impl Field for Sines {
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
-        let base = self.waves.base;
-        let highest = self.waves.parts.iter().fold(base, |sum, wave| {
-            let turn = if wave.amplitude < 0.0 { wave.phase + PI } else { wave.phase };
-            let reach = within.reach(wave.frequency);
-            let crest = highest_sine(Span::new(reach.from + turn, reach.to + turn));
-            sum + wave.amplitude.abs() * crest
-        });
-        // The arguments of the lookups are rounded, too.
-        highest + 1e-12 * base
+        self.waves.bound(|&vector| within.reach(vector))
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
-        let waves = self.waves.parts.iter().map(|wave| Wave {
-            amplitude: wave.amplitude,
-            frequency: wave.frequency.dot(ray.direction),
-            phase: wave.phase + wave.frequency.dot(ray.origin),
-        });
-        Arc::new(Waves::new(self.waves.base, waves.collect()))
+        let seen = |vector: &Point| [ray.origin, ray.direction].map(|at| vector.dot(at));
+        Arc::new(self.waves.on_ray(seen))
     }
 }
 

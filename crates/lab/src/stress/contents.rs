@@ -240,7 +240,7 @@ impl Filling {
             }
             Self::Gaussian(width, away) => {
                 let centre = centre + Point(away) * unit;
-                let gaussian = Gaussian { peak: size, centre, width: width * unit };
+                let gaussian = Gaussian::new(size, centre, width * unit);
                 Arc::new(Blob { gaussian, bounds })
             }
             Self::Radial(further) => {

@@ -64,7 +64,9 @@ impl Line {
             &Field::Exponential { extinction, rate } => {
                 Arc::new(Exponential::new(extinction, rate))
             }
-            &Field::Gaussian { peak, centre, width } => Arc::new(Gaussian { peak, centre, width }),
+            &Field::Gaussian { peak, centre, width } => {
+                Arc::new(Gaussian::new(peak, centre, width))
+            }
             Field::Sines { base, waves } => {
                 let wave = |&[amplitude, frequency, phase]: &[f64; 3]| Wave {
                     amplitude,
@@ -166,7 +168,7 @@ impl Space {
                 Arc::new(Grid::random(size, 0, bounds, interpolation, placement))
             }
             Self::Gaussian(peak, width, radius) => {
-                let gaussian = Gaussian { peak, centre: Point([1.0, 0.0, 9.0]), width };
+                let gaussian = Gaussian::new(peak, Point([1.0, 0.0, 9.0]), width);
                 Arc::new(Blob { gaussian, bounds: ball(radius) })
             }
             Self::Exponential(rate, radius) => {

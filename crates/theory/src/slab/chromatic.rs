@@ -202,7 +202,7 @@ mod tests {
         let line = |ends: [f64; 2]| Arc::new(Piecewise::lines(&[0.0, 1.0], &ends));
         let wave = |amplitude| Wave { amplitude, frequency: 9.0, phase: 0.4 };
         let steep = |extinction| Arc::new(Exponential::new(extinction, 30.0));
-        let blob = |peak| Arc::new(Gaussian { peak, centre: 0.3, width: 0.08 });
+        let blob = |peak| Arc::new(Gaussian::new(peak, 0.3, 0.08));
         vec![
             [Arc::new(Piecewise::constant(1.0, SPAN)), line([0.95, 1.05])],
             [line([0.6, 0.9]), Arc::new(Piecewise::steps(&[0.0, 0.4, 1.0], &[1.1, 0.8]))],
