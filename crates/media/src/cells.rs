@@ -109,35 +109,3 @@ impl Cells {
         solve(index, self.ends[index], rest - (self.sums[index] - begin))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Index + 1 in each cell.
-    fn steps(index: usize, _: Span, span: Span) -> f64 {
-        (index + 1) as f64 * span.length()
-    }
-
-    #[test]
-    fn an_oblique_ray_crosses_two_sets_of_planes() {
-        let track = Track { start: [0.5, 0.25, 3.0], slope: [1.0, -0.5, 0.0] };
-        let cells = Cells::cross(track, Span::new(0.0, 2.0));
-        assert_eq!(cells.crossings(Span::new(0.0, 2.0)), [0.5, 1.5]);
-        let cells = cells.summed(steps);
-        let depth = cells.integrate(Span::new(0.25, 1.75), steps);
-        // .25·1 + 1·2 + .25·3
-        assert!((depth.value - 3.0).abs() < 1e-15);
-        let s = cells.invert(Span::new(0.25, 1.75), 1.25, steps).expect("inside");
-        assert!((s - 1.0).abs() < 1e-15);
-        assert_eq!(cells.invert(Span::new(0.25, 1.75), 3.01, steps), None);
-    }
-
-    #[test]
-    fn a_stretch_without_length_is_one_cell() {
-        let track = Track { start: [0.0; 3], slope: [1.0, 0.0, 0.0] };
-        let cells = Cells::cross(track, Span::empty(2.0)).summed(steps);
-        assert_eq!(cells.count(), 1);
-        assert_eq!(cells.integrate(Span::empty(2.0), steps).value, 0.0);
-    }
-}

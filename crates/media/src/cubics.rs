@@ -107,10 +107,4 @@ mod tests {
             assert!((cells.value(t) - (f64::from(n) - 0.1)).abs() < 1e-13, "{t}");
         }
     }
-
-    #[test]
-    fn a_stretch_without_length_is_one_cell() {
-        let cells = beginnings([0.0; 3], [1.0, 0.0, 0.0], Span::empty(2.0));
-        assert_eq!(cells.value(2.0), 2.0);
-    }
 }

@@ -165,8 +165,7 @@ impl Field for Eq21 {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Arc<Profile> {
-        let (u, v) =
-            ((ray.origin.dot(U), ray.direction.dot(U)), (ray.origin.dot(V), ray.direction.dot(V)));
+        let [u, v] = [U, V].map(|normal| (ray.origin.dot(normal), ray.direction.dot(normal)));
         let half_u = (u.0 * HALF_TURNS, u.1 * HALF_TURNS);
         let turned_v = (v.0 * HALF_TURNS - 0.25, v.1 * HALF_TURNS);
         Arc::new(Eq21Ray { u, v, half_u, turned_v })

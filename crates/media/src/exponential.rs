@@ -125,8 +125,7 @@ impl Stratified for Exponential {
     /// Places at the decay's own scale: equal panels would miss a steep one.
     fn features(&self, x: Span) -> Vec<f64> {
         let frames = [1.0, 4.0, 16.0, 40.0].map(|lengths| lengths / self.slope.abs());
-        let at = frames.map(|s| if self.slope > 0.0 { x.to - s } else { x.from + s });
-        at.into_iter().filter(|&t| x.contains_inside(t)).collect()
+        frames.map(|s| if self.slope > 0.0 { x.to - s } else { x.from + s }).into()
     }
 
     fn facts(&self) -> Facts<'_> {

@@ -104,16 +104,19 @@ pub struct GridRay {
     lookups: Cubics,
 }
 
-/// `∫` over part of a cell with the given cubic.
-fn simpson(cubic: [f64; 4], cell: Span, part: Span) -> f64 {
-    if cell.is_empty() {
-        return 0.0;
+/// Integral over part of a cell, given the number of the cell, its interval and the part.
+fn simpson(cubics: &[[f64; 4]]) -> impl Fn(usize, Span, Span) -> f64 {
+    |index, cell, part| {
+        if cell.is_empty() {
+            return 0.0;
+        }
+        let value = |t: f64| {
+            let x = (t - cell.from) / cell.length();
+            let [a, b, c, d] = cubics[index];
+            ((d * x + c) * x + b) * x + a
+        };
+        part.length() / 6.0 * (value(part.from) + 4.0 * value(part.middle()) + value(part.to))
     }
-    let value = |t: f64| {
-        let x = (t - cell.from) / cell.length();
-        ((cubic[3] * x + cubic[2]) * x + cubic[1]) * x + cubic[0]
-    };
-    part.length() / 6.0 * (value(part.from) + 4.0 * value(part.middle()) + value(part.to))
 }
 
 impl GridRay {
@@ -127,16 +130,12 @@ impl GridRay {
                 voxels.cubic(track.at(cell.middle()), track.at(cell.from), step)
             })
             .collect();
-        let cells = cells.summed(|index, cell, part| simpson(cubics[index], cell, part));
+        let cells = cells.summed(simpson(&cubics));
         let lookups = Cubics::new(track, inside, |middle, from| {
             voxels.cubic(track.at(middle), track.at(from), track.slope)
         });
         let terms = voxels.terms(ray);
         Self { voxels, terms, cells, cubics, lookups }
-    }
-
-    fn part(&self, index: usize, cell: Span, part: Span) -> f64 {
-        simpson(self.cubics[index], cell, part)
     }
 }
 
@@ -154,7 +153,7 @@ impl Extinction for GridRay {
 
 impl OpticalDepth for GridRay {
     fn optical_depth(&self, span: Span) -> Known {
-        let depth = self.cells.integrate(span, |index, cell, part| self.part(index, cell, part));
+        let depth = self.cells.integrate(span, simpson(&self.cubics));
         // Positions are rounded, and the field changes by less than its highest sample in a cell; where it jumps,
         // each plane moves by the rounding of its distance.
         let [start, slope] = self.terms;
@@ -171,7 +170,7 @@ impl OpticalDepth for GridRay {
     }
 
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
-        self.cells.invert(span, depth, |index, cell, part| self.part(index, cell, part))
+        self.cells.invert(span, depth, simpson(&self.cubics))
     }
 }
 

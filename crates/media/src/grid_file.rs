@@ -68,14 +68,9 @@ pub enum Format {
 impl Format {
     /// The format of a file's extension, in upper or lower case.
     pub fn of(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "vol" => Some(Self::Vol),
-            "npy" => Some(Self::Npy),
-            "vdb" => Some(Self::Vdb),
-            "nvdb" => Some(Self::Nvdb),
-            "pbrt" => Some(Self::Pbrt),
-            _ => None,
-        }
+        let extension = path.extension()?.to_str()?;
+        let all = [Self::Vol, Self::Npy, Self::Vdb, Self::Nvdb, Self::Pbrt];
+        all.into_iter().find(|format| format.ending()[1..].eq_ignore_ascii_case(extension))
     }
 
     /// Extension.

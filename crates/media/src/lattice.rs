@@ -256,24 +256,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn noise_vanishes_at_lattice_points() {
-        for p in [[0.0, 0.0, 0.0], [-3.0, 5.0, 1e6], [7.0, -1.0, -2.0]] {
-            assert_eq!(noise(p, 3, Fade::Quintic), 0.0);
-            assert_eq!(noise(p, 3, Fade::Cubic), 0.0);
-        }
-    }
-
-    #[test]
-    fn a_cell_continues_its_noise() {
-        for fade in [Fade::Quintic, Fade::Cubic] {
-            let cell = Cell::around([-0.5, 3.5, 9.5], 5);
-            for p in [[-0.1, 3.2, 9.9], [-1.0, 3.0, 9.0], [-0.999, 3.7, 9.0]] {
-                assert!((cell.value(p, fade) - noise(p, 5, fade)).abs() < 1e-14);
-            }
-        }
-    }
-
     /// The bound is the largest value if every corner has its best gradient: the two longest of the three
     /// distances.
     #[test]

@@ -31,12 +31,9 @@ impl Medium {
     /// The field with the errors of its support's ends.
     pub fn clipped(profile: Arc<Profile>, span: Span, ends: [Known; 2]) -> Self {
         let medium = Self::new(profile, span, Span::new(ends[0].value, ends[1].value));
-        let blurs =
-            ends.map(
-                |end| {
-                    if end.error == 0.0 { 0.0 } else { end.error * medium.extinction(end.value) }
-                },
-            );
+        let is_moved = |end: &Known| end.error != 0.0;
+        let blur = |end: Known| end.error * medium.extinction(end.value);
+        let blurs = ends.map(|end| Some(end).filter(is_moved).map_or(0.0, blur));
         Self { blurs, ..medium }
     }
 
@@ -102,7 +99,9 @@ impl Medium {
 
     /// The kinks of the field inside the support, in any order.
     pub fn breaks(&self) -> Vec<f64> {
-        self.profile.breaks(self.support)
+        let mut breaks = self.profile.breaks(self.support);
+        breaks.retain(|&t| self.support.contains_inside(t));
+        breaks
     }
 
     /// See [`super::Facts::panel_nodes`].

@@ -93,26 +93,3 @@ fn cure(bounds: Bounds, ray: &Ray) -> String {
         "it passes beside it; move `origin`, or turn `direction`".to_owned()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use numeric::geometry::Aabb;
-
-    #[test]
-    fn the_cure_says_what_is_wrong_with_the_ray() {
-        let cube = Bounds::Box(Aabb { low: Point([-1.0; 3]), high: Point([1.0; 3]) });
-        let ball = Bounds::Sphere { centre: Point([0.0; 3]), radius: 1.0 };
-        for (origin, direction, length, words) in [
-            ([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0], 3.0, "it ends at 3, before the volume begins at 4"),
-            ([-5.0, 0.0, 0.0], [-1.0, 0.0, 0.0], 30.0, "points away"),
-            ([-5.0, 0.0, 2.0], [1.0, 0.0, 0.0], 30.0, "passes beside"),
-        ] {
-            let ray = Ray::new(Point(origin), Point(direction), length).expect("a direction");
-            for bounds in [cube, ball] {
-                let cure = cure(bounds, &ray);
-                assert!(cure.contains(words), "{cure}");
-            }
-        }
-    }
-}

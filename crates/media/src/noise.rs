@@ -191,21 +191,6 @@ impl Noise {
         let spectrum = Spectrum { extinction, frequency, octaves, gain, seed, fade, unit };
         Self { spectrum: spectrum.with_unit(), bounds }
     }
-
-    fn on_ray(&self, ray: &Ray, inside: Span) -> NoiseRay {
-        let spectrum = self.spectrum;
-        let rule = GaussLegendre::new(9);
-        let track = track(ray, spectrum.frequency);
-        let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
-        let octaves = spectrum.amplitudes().zip(tracks).map(|((amplitude, seed), track)| Octave {
-            amplitude,
-            track,
-            seed,
-            fade: spectrum.fade,
-            cells: OnceLock::new(),
-        });
-        NoiseRay { spectrum, track, octaves: octaves.collect(), rule, inside }
-    }
 }
 
 /// Reads the page.
@@ -263,7 +248,19 @@ impl Field for Noise {
     }
 
     fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile> {
-        Arc::new(self.on_ray(ray, inside))
+        let Spectrum { frequency, fade, .. } = self.spectrum;
+        let track = track(ray, frequency);
+        let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
+        let amplitudes = self.spectrum.amplitudes().zip(tracks);
+        let octave = |((amplitude, seed), track)| Octave {
+            amplitude,
+            track,
+            seed,
+            fade,
+            cells: OnceLock::new(),
+        };
+        let (octaves, rule) = (amplitudes.map(octave).collect(), GaussLegendre::new(9));
+        Arc::new(NoiseRay { spectrum: self.spectrum, track, octaves, rule, inside })
     }
 
     /// The first octaves without rescaling: the unit stays that of all.

@@ -51,8 +51,8 @@ pub trait OpticalDepth: LookUp {
     /// `τ(a, b) = ∫ₐᵇ σ_t(t) dt` with a bound on its own error.
     fn optical_depth(&self, span: Span) -> Known;
 
-    /// The distances inside `span` where the field or one of its derivatives jumps, or that enclose a feature which
-    /// quadrature would otherwise miss. In any order.
+    /// The distances where the field or one of its derivatives jumps, or that enclose a feature which quadrature would
+    /// otherwise miss: all inside `span`, others are ignored. In any order.
     fn breaks(&self, span: Span) -> Vec<f64> {
         let _ = span;
         Vec::new()

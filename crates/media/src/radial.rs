@@ -202,30 +202,3 @@ impl Field for Radial {
         Facts { is_radial: true, ..Facts::default() }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn ball(coefficients: [f64; MAX_COEFFICIENTS]) -> Radial {
-        Radial { centre: Point([1.0, 0.0, 2.0]), radius: 1.5, coefficients }
-    }
-
-    fn depth(field: &Radial, origin: [f64; 3]) -> Known {
-        let ray = Ray::new(Point(origin), Point([0.0, 0.0, 1.0]), 9.0).expect("a direction");
-        let inside = field.bounds().clip(&ray);
-        field.along(&ray, inside).optical_depth(inside)
-    }
-
-    #[test]
-    fn a_diameter_and_a_chord_are_hand_values() {
-        // ∫ 2(1 − s²/R²) ds over the diameter is 8R/3; at D = R/2, h = R√3/2, it is 8h³/(3R²).
-        let field = ball([2.0, -2.0, 0.0, 0.0]);
-        assert!((depth(&field, [1.0, 0.0, 0.0]).value - 4.0).abs() < 1e-14);
-        let half = 1.5 * 0.75f64.sqrt();
-        let chord = depth(&field, [1.0, 0.75, 0.0]);
-        assert!((chord.value - 8.0 * half.powi(3) / 6.75).abs() < 1e-14);
-        assert!(chord.error < 1e-13);
-        assert!((field.value([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
-    }
-}

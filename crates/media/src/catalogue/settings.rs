@@ -241,26 +241,3 @@ impl<'a> Settings<'a> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::fixture::read;
-    use super::*;
-
-    #[test]
-    fn every_mistake_is_recorded() {
-        let table = [("extinction", -1.0), ("lenght", 2.0), ("draws", 1e6)];
-        let table = table.map(|(key, x)| (key, Value::Number(x)));
-        let (found, messages) = read(table, |settings| {
-            let extinction = settings.number("extinction", Domain::NonNegative);
-            let length = settings.number("length", Domain::Positive);
-            // An integer may be written as a float.
-            let draws = settings.count("draws", 1..=u64::MAX);
-            settings.close();
-            (extinction, length, draws)
-        });
-        assert_eq!(found, (None, None, Some(1_000_000)));
-        let known = "`lenght` is not known here";
-        assert_eq!(messages, ["`extinction` is -1", "`length` is missing", known]);
-    }
-}

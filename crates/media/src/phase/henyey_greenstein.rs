@@ -106,13 +106,6 @@ mod tests {
     }
 
     #[test]
-    fn without_asymmetry_it_is_isotropic() {
-        let phase = HenyeyGreenstein::new(0.0).expect("in range");
-        assert_eq!(phase.value(0.7) * 4.0 * PI, 1.0);
-        assert_eq!(phase.cosine(0.75), 0.5);
-    }
-
-    #[test]
     fn a_mean_cosine_of_one_is_refused() {
         for g in [1.0, -1.0, 1.5] {
             let found = read([("g", Value::Number(g))], HenyeyGreenstein::read);

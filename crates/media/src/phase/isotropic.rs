@@ -35,14 +35,3 @@ impl PhaseFunction for Isotropic {
         u * 2.0 - 1.0
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_quarter_of_all_light_lies_below_a_cosine_of_minus_one_half() {
-        assert_eq!(Isotropic.cosine(0.25), -0.5);
-        assert_eq!(Isotropic.value(0.3) * 4.0 * PI, 1.0);
-    }
-}

@@ -50,21 +50,3 @@ impl PhaseFunction for Rayleigh {
         unit(root - (root * root * root + root * 3.0 - q * 2.0) / (root * root * 3.0 + 3.0))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn it_is_symmetric_and_twice_as_strong_along_the_line_as_across() {
-        assert_eq!(Rayleigh.value(1.0), 2.0 * Rayleigh.value(0.0));
-        assert_eq!(Rayleigh.cosine(0.5), 0.0);
-        assert_eq!(Rayleigh.cosine(0.25), -Rayleigh.cosine(0.75));
-    }
-
-    #[test]
-    fn hand_worked_quantile() {
-        // cos θ = ½: ½³ + 3/2 = 13/8 = 2q, so u = (13/16 + 2)/4 = 45/64.
-        assert!((Rayleigh.cosine(45.0 / 64.0) - 0.5).abs() < 2e-16);
-    }
-}

@@ -174,24 +174,3 @@ fn number(kind: SampleType) -> Option<Number> {
         SampleType::U32 => "<u4",
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_written_is_read_from_the_top_and_other_images_beside_it() {
-        let (image, errors) = ([1.0, 2.0, 3.0, -0.5, 0.25, 65536.0], [0.5; 6]);
-        let grey = write([3, 2], 1, &[("error.", &errors), ("", &image)]).expect("a picture");
-        let read_grey = read(grey).expect("a picture");
-        let expected = |size, channels, values: &[f64]| Pixels {
-            size,
-            channels,
-            values: values.to_vec(),
-            has_halves: false,
-        };
-        assert_eq!(read_grey, expected([3, 2], 1, &image));
-        let colours = write([1, 2], 3, &[("", &image), ("error.", &errors)]).expect("a picture");
-        assert_eq!(read(colours).expect("a picture"), expected([1, 2], 3, &image));
-    }
-}
