@@ -93,64 +93,60 @@ pub struct Prices {
 impl Prices {
     /// Reads the prices of a medium, as far as they are kept.
     pub fn open(costs: &Costs, spec: &Spec) -> Self {
-        let given = |draw, lookup| {
-            let given = Some(Price { draw, lookup, error: 0.0 });
-            Self { known: BTreeMap::new(), path: None, given }
-        };
-        let (folder, anew) = match costs {
-            Costs::Lookups => return given(0.0, 1.0),
-            &Costs::Given { draw, lookup } => return given(draw, lookup),
-            Costs::Measured { folder, anew } => (folder, *anew),
-        };
-        let path = folder.as_deref().map(|folder| file(folder, spec));
-        let read = path.as_deref().filter(|_| !anew).and_then(|path| std::fs::read(path).ok());
-        // A file that cannot be read is written anew, and so are costs that cannot be.
-        let known = read.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        let mut known: BTreeMap<String, Price> = known.unwrap_or_default();
-        let is_cost = |cost: f64| (0.0..=*TIMES.end()).contains(&cost);
-        known.retain(|_, price| [price.draw, price.lookup, price.error].into_iter().all(is_cost));
-        Self { known, path, given: None }
+        let given = |draw, lookup| Some(Price { draw, lookup, error: 0.0 });
+        let mut prices = Self { known: BTreeMap::new(), path: None, given: None };
+        match costs {
+            Costs::Lookups => prices.given = given(0.0, 1.0),
+            &Costs::Given { draw, lookup } => prices.given = given(draw, lookup),
+            Costs::Measured { folder, anew } => {
+                prices.path = folder.as_deref().map(|folder| file(folder, spec));
+                let path = prices.path.as_deref().filter(|_| !anew);
+                let kept = path.and_then(|path| std::fs::read(path).ok());
+                // A file that cannot be read is written anew, and so are costs that cannot be.
+                let kept = kept.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+                let is_cost = |cost: f64| (0.0..=*TIMES.end()).contains(&cost);
+                prices.known = kept.unwrap_or_default();
+                prices.known.retain(|_, Price { draw, lookup, error }| {
+                    [*draw, *lookup, *error].into_iter().all(is_cost)
+                });
+            }
+        }
+        prices
     }
 
     /// Returns the price of a candidate, measured at two places if it is not known; `None` where it cannot be drawn.
-    pub fn of(&mut self, key: &str, case: &Case, at: (usize, [Variation; 2])) -> Option<Price> {
-        self.given.or_else(|| self.kept(key.to_owned(), || measured(case, at)))
+    pub fn of(&mut self, key: String, case: &Case, at: (usize, [Variation; 2])) -> Option<Price> {
+        let known = self.given.or_else(|| self.known.get(&key).copied());
+        known.or_else(|| {
+            let price = measured(case, at)?;
+            self.known.insert(key, price);
+            Some(price)
+        })
     }
 
-    /// Returns prices corrected by draws at one setting of each candidate; `None` for given costs, and where it cannot be
-    /// drawn.
+    /// Returns the prices of candidates of a case, each corrected by draws at one setting; `None` for given costs, and
+    /// where a candidate cannot be drawn.
     ///
     /// Candidates are timed in turn, round by round: other work on the machine slows all of them.
-    pub fn corrected(&mut self, wanted: &[Wanted<'_>]) -> Vec<Option<Price>> {
+    pub fn corrected(&mut self, case: &Case, wanted: &[Wanted<'_>]) -> Vec<Option<Price>> {
         if self.given.is_some() {
             return vec![None; wanted.len()];
         }
-        let mut timers: Vec<Option<Timer>> = wanted
-            .iter()
-            .map(|wanted| {
-                let is_known = self.known.contains_key(&wanted.key);
-                (!is_known).then(|| Timer::new(wanted.case, wanted.place, ROUNDS[1]))?
-            })
-            .collect();
+        let key = |&(text, (_, at), _): &Wanted| format!("{text} at {:?}", at.map(|(_, x)| x));
+        let timer = |wanted: &Wanted| {
+            let is_known = self.known.contains_key(&key(wanted));
+            (!is_known).then(|| Timer::new(case, wanted.1, ROUNDS[1]))?
+        };
+        let mut timers: Vec<Option<Timer>> = wanted.iter().map(timer).collect();
         while timers.iter_mut().flatten().fold(false, |any, timer| timer.round() | any) {}
         for (wanted, timer) in wanted.iter().zip(timers) {
-            let Some(timer) = timer else { continue };
-            let (Timing { seconds, error, lookups }, old) = (timer.timing(), wanted.price);
+            let (Some(Timer { seconds, lookups, .. }), old) = (timer, wanted.2) else { continue };
+            let (seconds, error) = fast(seconds);
             let factor = seconds / (old.draw + old.lookup * lookups);
             let price = Price { draw: old.draw * factor, lookup: old.lookup * factor, error };
-            self.known.insert(wanted.key.clone(), price);
+            self.known.insert(key(wanted), price);
         }
-        wanted.iter().map(|wanted| self.known.get(&wanted.key).copied()).collect()
-    }
-
-    /// Returns a price that is known, or measures it.
-    fn kept(&mut self, key: String, measure: impl FnOnce() -> Option<Price>) -> Option<Price> {
-        if let Some(known) = self.known.get(&key) {
-            return Some(*known);
-        }
-        let price = measure()?;
-        self.known.insert(key, price);
-        Some(price)
+        wanted.iter().map(|wanted| self.known.get(&key(wanted)).copied()).collect()
     }
 
     /// Keeps the prices. Returns a warning if they cannot be kept: the next advice measures them again.
@@ -179,47 +175,28 @@ fn file(folder: &Path, spec: &Spec) -> PathBuf {
     folder.join(format!("{:016x}.json", name_hash(&name)))
 }
 
-/// A candidate at one setting, with its price by draws at others.
-pub struct Wanted<'a> {
-    key: String,
-    case: &'a Case,
-    place: (usize, Variation),
-    price: Price,
-}
-
-impl<'a> Wanted<'a> {
-    /// Joins the text of a candidate, a case, the index of the candidate in it and the setting, and its price.
-    pub fn new(text: &str, case: &'a Case, place: (usize, Variation), price: Price) -> Self {
-        let key = format!("{text} at {:?}", place.1.map(|(_, x)| x));
-        Self { key, case, place, price }
-    }
-}
-
-/// Time of a draw at one σ̂.
-struct Timing {
-    /// Seconds of a draw.
-    seconds: f64,
-    /// Relative error.
-    error: f64,
-    /// Lookups of a draw in theory.
-    lookups: f64,
-}
+/// Text of a candidate, its index with a setting, and its price by draws at others.
+pub type Wanted<'a> = (&'a str, (usize, Variation), Price);
 
 /// Measures a candidate at two places.
 fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option<Price> {
-    let timings = places.into_iter().filter_map(|place| timed(case, estimator, place));
-    let timings: Vec<Timing> = timings.collect();
-    let error = timings.iter().fold(0.0, |error: f64, timing| error.max(timing.error));
-    let few = timings.first()?;
-    let lookup = match &timings[1..] {
-        [many] if many.lookups > APART * few.lookups => {
-            let slope = (many.seconds - few.seconds) / (many.lookups - few.lookups);
-            slope.clamp(0.0, few.seconds / few.lookups)
+    let timed = |place| {
+        let mut timer = Timer::new(case, (estimator, place), ROUNDS[0])?;
+        while timer.round() {}
+        Some((timer.lookups, fast(timer.seconds)))
+    };
+    let timings: Vec<_> = places.into_iter().filter_map(timed).collect();
+    let error = timings.iter().map(|(_, (_, error))| *error).fold(0.0, f64::max);
+    let &(lookups, (seconds, _)) = timings.first()?;
+    let each = seconds / lookups;
+    let lookup = match timings[1..] {
+        [(many, (longer, _))] if many > APART * lookups => {
+            ((longer - seconds) / (many - lookups)).clamp(0.0, each)
         }
-        _ if few.lookups > 0.0 => few.seconds / few.lookups,
+        _ if lookups > 0.0 => each,
         _ => 0.0,
     };
-    Some(Price { draw: (few.seconds - lookup * few.lookups).max(0.0), lookup, error })
+    Some(Price { draw: (seconds - lookup * lookups).max(0.0), lookup, error })
 }
 
 /// A candidate at one place that is timed in rounds.
@@ -274,18 +251,6 @@ impl Timer {
         self.seconds.push(begin.elapsed().as_secs_f64() / draws);
         true
     }
-
-    fn timing(self) -> Timing {
-        let (seconds, error) = fast(self.seconds);
-        Timing { seconds, error, lookups: self.lookups }
-    }
-}
-
-/// Times a candidate at one place.
-fn timed(case: &Case, estimator: usize, place: Variation) -> Option<Timing> {
-    let mut timer = Timer::new(case, (estimator, place), ROUNDS[0])?;
-    while timer.round() {}
-    Some(timer.timing())
 }
 
 /// Returns the lower quartile of the times of rounds, and its relative error: other work only adds time.

@@ -26,7 +26,7 @@ pub mod options;
 pub mod profile;
 pub mod rays;
 pub mod row;
-pub mod search;
+pub mod score;
 pub mod study;
 
 pub use costs::Costs;

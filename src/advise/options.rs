@@ -24,12 +24,12 @@ const ERRORS: RangeInclusive<f64> = 1e-9..=0.999;
 /// Factors of majorants that are taken.
 const LOOSENESS: RangeInclusive<f64> = 1.0..=1e6;
 
-/// Goal of the draws as an option gives it.
+/// Budget of each ray, as an option gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Budget {
-    /// Seconds for each ray.
+    /// Seconds.
     Seconds(f64),
-    /// Lookups for each ray.
+    /// Lookups.
     Lookups(f64),
 }
 
@@ -48,9 +48,8 @@ pub fn goal(error: f64, budget: Option<Budget>, costs: Costs) -> (Target, Costs)
 ///
 /// The errors that it takes.
 pub fn error(text: &str) -> Result<f64, String> {
-    let percent = text.strip_suffix('%');
-    let unit = if percent.is_some() { 0.01 } else { 1.0 };
-    let number = percent.unwrap_or(text).trim().parse::<f64>().ok().map(|x| x * unit);
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let number = number.trim().parse::<f64>().ok().map(|x| x * unit);
     let number = number.filter(|error| ERRORS.contains(error));
     number.ok_or_else(|| "it takes an error from 1e-9 to 0.999, such as 1% or 0.01".to_owned())
 }

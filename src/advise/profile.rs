@@ -15,11 +15,11 @@
 
 use super::candidates::{Collisions, RECIPE};
 use super::row::Row;
-use super::search::{Goal, up};
 use super::study::Study;
 use numeric::digits::number;
 use theory::collisions::Rule;
 use theory::collisions::rules::{Single, Weight};
+use theory::prediction::search::{Goal, up};
 
 /// Steps of a profile.
 pub const STEPS: usize = 64;

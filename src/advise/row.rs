@@ -3,10 +3,11 @@
 use super::Target;
 use super::candidates;
 use super::costs::{Prices, Wanted};
-use super::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
-use super::study::{Best, Score, Study};
+use super::score::Score;
+use super::study::{Best, Study};
 use crate::case::sweep::{Variation, What};
 use numeric::digits::number;
+use theory::prediction::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
 
 /// Difference of two times that is a tie, with exact costs: settings are searched to this accuracy.
 const TIE: f64 = 1e-3;
@@ -101,8 +102,8 @@ impl Row {
         let margins = |x| [-1.0, 1.0].map(|sign| edge(x, sign, 2.0 * best.goal.of(x)));
         let least = setting.map(|(_, x)| x * edge(x, -1.0, UNKNOWN));
         let below = setting.zip(least).filter(|&(_, least)| least > 0.0);
-        let below = below.map(|((what, _), least)| Some((what, BELOW * least)));
-        let bound = below.and_then(|at| study.violated(candidate, at, 0..study.cases.len()));
+        let below = below.map(|((what, _), least)| (candidate, Some((what, BELOW * least))));
+        let bound = below.and_then(|below| study.violated(below, 0..study.cases.len()));
         let own = match () {
             () if candidates::is_profile(text) => "|σ_t − σ_c| along the ray".to_owned(),
             () if candidates::is_learned(text) => "pilot rays".to_owned(),
@@ -187,19 +188,16 @@ fn lines(text: &str, constant: Option<f64>, factor: Option<f64>) -> String {
 
 /// Corrects the prices of rows by draws at their advised settings, unless prices are given.
 pub fn correct(rows: &mut [Row], study: &mut Study, prices: &mut Prices) {
-    let case = &study.cases[study.cases.len() / 2];
-    let (mut wanted, mut priced) = (Vec::new(), Vec::new());
-    for row in rows {
-        let Some(price) = study.prices[row.candidate] else { continue };
-        let place = (row.candidate, row.setting);
-        wanted.push(Wanted::new(&study.texts[row.candidate], case, place, price));
-        priced.push(row);
-    }
-    let found = prices.corrected(&wanted);
-    for (row, price) in priced.into_iter().zip(found) {
-        let Some(price) = price else { continue };
+    let wanted = |row: &Row| {
+        let text = &*study.texts[row.candidate];
+        Some((text, (row.candidate, row.setting), study.prices[row.candidate]?))
+    };
+    // Every row has a price.
+    let wanted: Vec<Wanted> = rows.iter().filter_map(wanted).collect();
+    let found = prices.corrected(&study.cases[study.cases.len() / 2], &wanted);
+    for (row, price) in rows.iter_mut().zip(found).filter_map(|(row, price)| Some((row, price?))) {
         study.prices[row.candidate] = Some(price);
-        if let Some(score) = study.score_of_all(row.candidate, row.setting) {
+        if let Some(score) = study.score_of_all((row.candidate, row.setting)) {
             row.cost_error = price.error;
             row.weigh(score, study.request.target);
         }

@@ -4,16 +4,16 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
+use super::Request;
 use super::candidates::{self, family};
 use super::costs::{Price, Prices};
-use super::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, Least, UNKNOWN, up};
-use super::{Request, Target};
+use super::score::{Score, relative_variance, weights};
 use crate::case::sweep::{Variation, What};
 use crate::case::{Case, CaseError};
 use estimators::Refusal;
 use media::Body;
-use theory::prediction::CERTAIN;
-use theory::{Channel, Moments, Prediction, parallel};
+use theory::prediction::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, Least, UNKNOWN, up};
+use theory::{Moments, Prediction, parallel};
 
 /// Number of rays on which settings are searched; the answer is then evaluated on all of them.
 const PROBES: usize = 6;
@@ -21,8 +21,6 @@ const PROBES: usize = 6;
 const SEEDS: u64 = 4;
 /// Factors on the setting of the probes, of which the first is taken that is allowed on all rays.
 const RAISES: [f64; 6] = [1.0, 1.002, 1.02, 1.1, 1.4, 2.0];
-/// Relative difference of a mean from the truth that is a bias.
-const BIAS: f64 = 1e-9;
 /// Factor on the value of the first member of a family beyond which another one is not searched to the end.
 const BEHIND: f64 = 1.5;
 /// Steps of a factor of two on each side of a constant σ̂ that are tried first: a particle that collides for real and one
@@ -38,6 +36,9 @@ struct Free {
     /// Ray with that, if it is no probe: a σ̂ that exists there exists on most others.
     ray: Option<usize>,
 }
+
+/// Index of a candidate, with its constant σ̂ or the factor on σ̂; `None` where it is not free.
+pub type Setting = (usize, Variation);
 
 /// Candidates on the rays of a medium.
 pub struct Study<'a> {
@@ -58,44 +59,6 @@ pub struct Study<'a> {
     free: Vec<Option<Free>>,
     /// Predictions at the natural scale, by candidate, ray and seed, of which others are multiples.
     at_scale: Mutex<BTreeMap<(usize, usize, u64), Option<Prediction>>>,
-}
-
-/// Variance and cost of a candidate at one setting, means over the rays.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Score {
-    /// Variance of a draw relative to the squared mean transmittance.
-    pub variance: f64,
-    /// Relative variance times cost: the cost at a relative error of 1.
-    pub work: f64,
-    /// Relative variance times cost of each ray.
-    pub works: Vec<f64>,
-    /// Cost of a draw with its share of the setup.
-    pub cost: f64,
-    /// Expected lookups of a draw.
-    pub lookups: f64,
-    /// Setup lookups of a ray.
-    pub setup_lookups: f64,
-    /// Largest kurtosis of a draw on a ray; `None` where theory has none or the variance is 0.
-    pub kurtosis: Option<f64>,
-    /// True if theory only bounds the variance of some ray.
-    pub is_bound: bool,
-}
-
-impl Score {
-    /// Returns the relative standard deviation of a draw, root mean square over the rays.
-    pub fn deviation(&self) -> f64 {
-        self.variance.sqrt()
-    }
-
-    /// Returns the cost to an error, of one draw at least, or the squared error within a budget; beyond the budget, a value
-    /// that cannot be taken and that rises with the cost.
-    pub fn goal(&self, target: Target) -> f64 {
-        match target {
-            Target::Error(error) => (self.work / (error * error)).max(self.cost),
-            Target::Budget(budget) if self.cost <= budget => self.work / budget,
-            Target::Budget(budget) => BEYOND * (self.cost / budget),
-        }
-    }
 }
 
 /// The best setting of a family of candidates.
@@ -143,7 +106,7 @@ impl<'a> Study<'a> {
             // The numbers of a profile depend on the prices.
             let key = if candidates::is_profile(text) { family(text) } else { text.clone() };
             let at = |factor| free[candidate].map(|free: Free| (free.what, begin(free) * factor));
-            market.of(&key, case, (candidate, [at(1.0), at(4.0)]))
+            market.of(key, case, (candidate, [at(1.0), at(4.0)]))
         };
         let prices: Vec<Option<Price>> = texts.iter().enumerate().map(price).collect();
         let mut lookups: Vec<f64> = prices.iter().flatten().map(|price| price.lookup).collect();
@@ -155,24 +118,14 @@ impl<'a> Study<'a> {
     }
 
     /// Predicts a candidate on a ray, for a seed of its pilot rays; `None` if it is refused there.
-    fn predict(
-        &self,
-        candidate: usize,
-        at: Variation,
-        (ray, seed): (usize, u64),
-    ) -> Option<Prediction> {
+    fn predict(&self, (candidate, at): Setting, (ray, seed): (usize, u64)) -> Option<Prediction> {
         let case = &self.cases[ray];
         case.at(at).ok()?.predict(candidate, None, case.pilots(seed, candidate))
     }
 
     /// Estimates variance and lookups of a candidate on a ray, for searches: with a weight at every collision, without new
     /// integrals.
-    fn estimate(
-        &self,
-        candidate: usize,
-        at: Variation,
-        (ray, seed): (usize, u64),
-    ) -> Option<Prediction> {
+    fn estimate(&self, (candidate, at): Setting, (ray, seed): (usize, u64)) -> Option<Prediction> {
         let free = self.free[candidate].filter(|_| candidates::weighs(&self.texts[candidate]));
         let case = &self.cases[ray];
         let estimate = |at| case.at(at).ok()?.estimate(candidate, case.pilots(seed, candidate));
@@ -197,28 +150,25 @@ impl<'a> Study<'a> {
     }
 
     /// Returns the reason why a candidate is refused at a setting on a ray; `None` if it is not.
-    fn refusal(&self, candidate: usize, at: Variation, ray: usize) -> Option<Refusal> {
+    fn refusal(&self, (candidate, at): Setting, ray: usize) -> Option<Refusal> {
         let case = &self.cases[ray];
         case.at(at).and_then(|at| at.prepare(candidate, case.pilots(1, candidate))).err()
     }
 
     /// Returns the reason why a candidate is refused at its natural scale on the first ray; `None` if it is not.
     pub fn refusal_at_scale(&self, candidate: usize) -> Option<Refusal> {
-        self.refusal(candidate, self.free[candidate].map(|free| (free.what, free.scale)), 0)
+        self.refusal((candidate, self.free[candidate].map(|free| (free.what, free.scale))), 0)
     }
 
     /// Returns the inequality, in words, that a setting violates on one of some rays; `None` if it violates none.
     pub fn violated(
         &self,
-        candidate: usize,
-        at: Variation,
+        setting: Setting,
         rays: impl IntoIterator<Item = usize>,
     ) -> Option<&'static str> {
         // A prediction is faster than a preparation with its reason.
-        let refused =
-            rays.into_iter().filter(|&ray| self.predict(candidate, at, (ray, 1)).is_none());
-        let mut reasons = refused.filter_map(|ray| self.refusal(candidate, at, ray));
-        reasons.find_map(|reason| match reason {
+        let mut refused = rays.into_iter().filter(|&ray| self.predict(setting, (ray, 1)).is_none());
+        refused.find_map(|ray| match self.refusal(setting, ray)? {
             Refusal::Inequality { needs, .. } => Some(needs),
             _ => None,
         })
@@ -265,9 +215,9 @@ impl<'a> Study<'a> {
     }
 
     /// Returns the score of a candidate over all rays.
-    pub fn score_of_all(&self, candidate: usize, at: Variation) -> Option<Score> {
+    pub fn score_of_all(&self, setting: Setting) -> Option<Score> {
         let rays: Vec<usize> = (0..self.cases.len()).collect();
-        self.score(candidate, &rays, |place| self.predict(candidate, at, place))
+        self.score(setting.0, &rays, |place| self.predict(setting, place))
     }
 
     /// Returns the goal on the probes as a function of the free quantity, of a σ̂ that is larger than needed by a factor.
@@ -275,17 +225,17 @@ impl<'a> Study<'a> {
         let free = self.free[candidate];
         let largest = free.and_then(|free| free.ray);
         Goal::new(move |x| {
-            let at = |x: f64| free.map(|free| (free.what, x));
+            let at = |x: f64| (candidate, free.map(|free| (free.what, x)));
             let is_refused = |x| {
                 let rays = self.probes.iter().copied().chain(largest);
-                self.violated(candidate, at(x), rays).is_some()
+                self.violated(at(x), rays).is_some()
             };
             if looseness > 1.0 && is_refused(x / looseness) {
                 return f64::INFINITY;
             }
             let is_missing = Cell::new(false);
             let predict = |place| {
-                let prediction = self.estimate(candidate, at(x), place);
+                let prediction = self.estimate(at(x), place);
                 is_missing.set(is_missing.get() || prediction.is_none());
                 prediction
             };
@@ -326,17 +276,14 @@ impl<'a> Study<'a> {
         let least = all.iter().map(|(_, (least, _))| least.value).fold(f64::INFINITY, f64::min);
         let near = all.into_iter().filter(|(_, (own, _))| own.value <= least * (1.0 + ABOVE_LIMIT));
         let near = near.map(|(candidate, (least, goal))| {
-            let Some(Free { what, .. }) = self.free[candidate] else {
-                return Best {
-                    candidate,
-                    setting: None,
-                    value: least.value,
-                    kind: Kind::Fixed,
-                    goal,
-                };
+            let (setting, value, kind) = match self.free[candidate] {
+                None => (None, least.value, Kind::Fixed),
+                Some(Free { what, .. }) => {
+                    let (x, value, kind) = goal.settled(least);
+                    (Some((what, x)), value, kind)
+                }
             };
-            let (x, value, kind) = goal.settled(least);
-            Best { candidate, setting: Some((what, x)), value, kind, goal }
+            Best { candidate, setting, value, kind, goal }
         });
         let mut best = near.min_by(|a, b| a.value.total_cmp(&b.value))?;
         if self.request.looseness > 1.0 {
@@ -370,7 +317,7 @@ impl<'a> Study<'a> {
         let tries = if best.setting.is_some() { &RAISES[..] } else { &RAISES[..1] };
         tries.iter().find_map(|factor| {
             let setting = best.setting.map(|(what, x)| (what, up(x * factor)));
-            Some((setting, self.score_of_all(best.candidate, setting)?))
+            Some((setting, self.score_of_all((best.candidate, setting))?))
         })
     }
 }
@@ -401,33 +348,4 @@ fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>>
         Some(Free { what, scale: if scale > 0.0 { scale } else { 1.0 }, ray })
     };
     texts.iter().enumerate().map(&mut free).collect()
-}
-
-/// Returns the variance of a channel relative to its squared mean, or a bound on it; `None` where theory has neither,
-/// and of a biased estimator.
-fn relative_variance(channel: &Channel) -> Option<f64> {
-    let truth = channel.truth.value;
-    let off = (channel.mean.value - truth).abs();
-    if off > BIAS * truth.abs() + channel.mean.error + channel.truth.error {
-        return None;
-    }
-    match channel.moments {
-        Some(moments) if moments.relative[0] <= CERTAIN => Some(0.0),
-        Some(_) => Some(channel.resolved_moments()?.variance() / (truth * truth)),
-        None => Some(channel.variance_bound? / (truth * truth)),
-    }
-}
-
-/// Returns `(T/T̄)²` of each ray; 1 for problems other than transmittance, and for a single ray.
-fn weights(base: &Case, cases: &[Case]) -> Vec<f64> {
-    let depth = |case: &Case| {
-        let medium = &case.scenario.media()[0];
-        medium.optical_depth(medium.support()).value
-    };
-    let all: Vec<f64> = cases.iter().map(|case| (-depth(case)).exp()).collect();
-    let mean = all.iter().sum::<f64>() / all.len() as f64;
-    if base.problem != "transmittance" || cases.len() == 1 || mean == 0.0 {
-        return vec![1.0; cases.len()];
-    }
-    all.into_iter().map(|t| (t / mean).powi(2)).collect()
 }

@@ -11,7 +11,8 @@ use crate::plan::{Planned, PlannedCase};
 use crate::record::theory::finite;
 use ::theory::Channel;
 use ::theory::parallel;
-use ::theory::prediction::optimum::{Kind, Optimum, best_constants};
+use ::theory::prediction::optimum::{Optimum, best_constants};
+use ::theory::prediction::search::Kind;
 
 /// Axis of a sweep and the predicted curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -64,7 +65,7 @@ pub struct Best {
 impl Best {
     /// Returns whether the figure of merit is largest there.
     pub fn is_optimum(&self) -> bool {
-        self.kind == words(Kind::Maximum)
+        self.kind == Kind::Optimum.words()
     }
 }
 
@@ -217,21 +218,12 @@ fn without_points(id: &ExperimentId, listed: usize) -> Curve {
     Curve { estimator, listed, control, channel, points, optimum: None, best: None }
 }
 
-/// Words for the kind of the best σ̂ in tables and files.
-fn words(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Maximum => "optimum",
-        Kind::ShareOfLimit { .. } => "90 % of the limit",
-        Kind::NoVariance => "no variance",
-        Kind::EndOfSearch => "end of the search",
-    }
-}
-
 /// Converts the best σ̂ for a record.
 pub fn named_best(optimum: Optimum) -> Best {
-    let Optimum { sampling, figure_of_merit, kind } = optimum;
-    let (fom, limit) = (finite(Some(figure_of_merit)), kind.limit());
-    Best { sampling, fom, kind: words(kind).to_owned(), limit }
+    let Optimum { sampling, figure_of_merit, limit, kind } = optimum;
+    let fom = finite(Some(figure_of_merit));
+    let words = if kind == Kind::NearLimit { "90 % of the limit" } else { kind.words() };
+    Best { sampling, fom, kind: words.to_owned(), limit }
 }
 
 /// Returns the channels with their points; none if the estimator is refused.

@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use super::Joined;
-use crate::advise::search::MAX_FACTOR;
 use crate::advise::{Advice, Group, Row, Target};
 use crate::report::fields::{Shown, grid, shown};
 use crate::report::layout::{Paint, Pen, end_elided};
 use crate::report::lists::joined;
 use numeric::digits::{fixed, percent, short, time};
+use theory::prediction::search::MAX_FACTOR;
 
 /// Columns, each with its rank, before and after the goal.
 const FIRST: &[Shown] = shown!(Joined: "rank_marked", "estimator", "sampling_marked");

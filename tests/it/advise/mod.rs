@@ -8,11 +8,11 @@ use std::path::PathBuf;
 
 use crate::common::place::{Place, assert_says};
 use crate::common::{case, differs, failing, none, rows, source};
-use trueflight::advise::search::Kind;
 use trueflight::advise::{Advice, CURVES, Costs, Group, Request, Row, Target, advise};
 use trueflight::case::Spec;
 use trueflight::case::sweep::What;
 use trueflight::catalogue::own_pages;
+use trueflight::theory::prediction::search::Kind;
 
 const LINE: &str = "title = \"a line\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\n";
 pub(super) const SINES: &str = "title = \"waves\"\n[problem.transmittance]\n\

@@ -4,6 +4,7 @@ pub mod count;
 pub mod moments;
 pub mod optimum;
 pub mod raw;
+pub mod search;
 
 use super::{CountDistribution, Moments};
 use numeric::{Grade, Known};

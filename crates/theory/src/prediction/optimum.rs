@@ -1,44 +1,17 @@
-//! The constant σ̂ with the largest figure of merit.
+//! The best constant σ̂: where V·cost is smallest, or near its limit.
 //!
-//! The figure of merit is `1/(V · (E[M] + S/n))`: the n draws of a ray share its S setup lookups.
-//! An estimator that may end early has a finite optimum, found by a one-dimensional search on log σ̂. The double
-//! particle has no optimum: its figure of merit rises with σ̂ towards the limit `1/(T² ℓ ∫residual²)`, ℓ the length
-//! of the support. The answer is then the σ̂ that reaches 90 % of the limit, with the limit. Each channel has a
-//! variance of its own, and so a best σ̂ of its own.
+//! The cost is `E[M] + S/n`: the n draws of a ray share its S setup lookups. The figure of merit is `1/(V·cost)`. An
+//! estimator that may end early has a finite optimum. The double particle has none: its V·cost falls with σ̂ towards the
+//! limit `T² ℓ ∫residual²`, ℓ the length of the support. The answer is then a smaller σ̂, at which V·cost is a given share
+//! above the limit. Each channel has a variance of its own, and so a best σ̂ of its own.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, with the cost of the walk added.
 
+use super::search::{Goal, Kind};
 use crate::{Prediction, parallel};
-use numeric::roots;
 
 /// Share of the limit at which a rising figure of merit is reported.
-pub const SHARE: f64 = 0.9;
-
-/// Kind of a reported σ̂.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
-    /// The figure of merit is largest there.
-    Maximum,
-    /// The figure of merit rises with σ̂ to a limit, and reaches 90 % of it there.
-    ShareOfLimit {
-        /// The limit, `1/(V · cost)` for σ̂ → ∞.
-        limit: f64,
-    },
-    /// The variance is 0 there: the figure of merit is infinite.
-    NoVariance,
-    /// The figure of merit still rises at the end of the search, from 1e-2 of the largest residual to at least 1e3 of it.
-    EndOfSearch,
-}
-
-impl Kind {
-    /// The limit of a figure of merit that rises to one.
-    pub fn limit(self) -> Option<f64> {
-        match self {
-            Self::ShareOfLimit { limit } => Some(limit),
-            _ => None,
-        }
-    }
-}
+const SHARE: f64 = 0.9;
 
 /// The best constant σ̂ and the figure of merit there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +20,8 @@ pub struct Optimum {
     pub sampling: f64,
     /// `1/(V · (E[M] + S/n))` there; infinite where the variance is 0.
     pub figure_of_merit: f64,
+    /// Limit of the figure of merit for σ̂ → ∞, if it rises to one.
+    pub limit: Option<f64>,
     /// Kind of this σ̂.
     pub kind: Kind,
 }
@@ -61,6 +36,8 @@ const SETTLED: f64 = 1e-3;
 const FLAT: f64 = 1e-2;
 /// Maximum number of factors of ten by which σ̂ follows a rising figure of merit.
 const DECADES: usize = 8;
+/// Factor by which the answer may lie below the σ̂ at which the limit is nearly reached.
+const FURTHEST: f64 = 1e22;
 
 /// Searches, for each channel, the constant σ̂ with the largest figure of merit around `scale`, the largest
 /// residual. Empty where the estimator is refused everywhere.
@@ -76,122 +53,92 @@ pub fn best_constants(
     if scale.is_nan() || scale <= 0.0 {
         return Vec::new();
     }
-    let merits = |log: f64| -> Vec<f64> {
-        predict(scale * log.exp()).map_or_else(Vec::new, |prediction| {
-            (0..prediction.channels.len())
-                .map(|channel| prediction.figure_of_merit(channel, draws_per_ray).unwrap_or(0.0))
-                .collect()
-        })
+    let works = |share: f64| -> Vec<f64> {
+        let Some(prediction) = predict(scale * share) else { return Vec::new() };
+        let merit = |channel| prediction.figure_of_merit(channel, draws_per_ray);
+        let work = |channel| merit(channel).map_or(f64::INFINITY, f64::recip);
+        (0..prediction.channels.len()).map(work).collect()
     };
-    let of = |merits: &[f64], channel: usize| merits.get(channel).copied().unwrap_or(0.0);
-    let coarse: Vec<Vec<f64>> = parallel::range(COARSE, |i| merits(at(i)));
+    let places: Vec<f64> = (0..COARSE).map(place).collect();
+    let coarse: Vec<Vec<f64>> = parallel::map(&places, |log| works(log.exp()));
+    let of = |works: &[f64], channel: usize| works.get(channel).copied().unwrap_or(f64::INFINITY);
     let channels = coarse.iter().map(Vec::len).max().unwrap_or(0);
-    let best = |channel: usize| {
-        let coarse: Vec<f64> = coarse.iter().map(|all| of(all, channel)).collect();
-        let merit = |log: f64| of(&merits(log), channel);
-        let found = best_log(&coarse, merit)?;
-        Some(Optimum {
-            sampling: scale * found.log.exp(),
-            figure_of_merit: found.merit,
-            kind: found.kind,
-        })
-    };
-    parallel::range(channels, best)
+    parallel::range(channels, |channel| {
+        let known = places.iter().zip(&coarse).map(|(&log, works)| [log, of(works, channel)]);
+        let goal = Goal::knowing(known.collect(), TOLERANCE, |x| of(&works(x), channel));
+        best(&goal, &places).map(|best| Optimum { sampling: scale * best.sampling, ..best })
+    })
 }
 
-/// `ln(σ̂/scale)` at a step of the coarse search.
-fn at(step: usize) -> f64 {
+/// Returns `ln(σ̂/scale)` at a step of the coarse search.
+fn place(step: usize) -> f64 {
     let (low, high) = (1e-2f64.ln(), 1e3f64.ln());
     low + (high - low) / (COARSE - 1) as f64 * step as f64
 }
 
-/// A place on the axis of `ln(σ̂/scale)` and the figure of merit there.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    log: f64,
-    merit: f64,
-    kind: Kind,
-}
-
-/// Searches the maximum of a figure of merit, or 90 % of its limit.
-fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Candidate> {
-    let (best, &largest) = coarse.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
-    if largest <= 0.0 {
+/// Searches the least V·cost given coarse places, or the place near its limit; σ̂ is relative to the scale.
+fn best(goal: &Goal, places: &[f64]) -> Option<Optimum> {
+    let value = |step: usize| goal.at(places[step]);
+    let last = COARSE - 1;
+    let step = (0..COARSE).rev().min_by(|&a, &b| value(a).total_cmp(&value(b)))?;
+    let found = |log: f64, kind| Optimum {
+        sampling: log.exp(),
+        figure_of_merit: goal.at(log).recip(),
+        limit: None,
+        kind,
+    };
+    if value(step).is_infinite() {
         return None;
     }
-    if largest.is_infinite() {
-        return Some(Candidate { log: at(best), merit: largest, kind: Kind::NoVariance });
+    if value(step) == 0.0 {
+        return Some(found(places[step], Kind::NoVariance));
     }
-    if best == 0 {
-        return Some(Candidate { log: at(0), merit: largest, kind: Kind::EndOfSearch });
+    if step == 0 {
+        return Some(found(places[0], Kind::EndOfSearch));
     }
-    let before = coarse[best - 1];
-    if best == COARSE - 1 {
-        let Some((far, limit)) = limit([at(best - 1), at(best)], [before, largest], &merit) else {
-            return Some(Candidate { log: at(best), merit: largest, kind: Kind::EndOfSearch });
-        };
-        return share_of_limit(coarse, far, limit, merit);
-    }
-    // A refused point beside the best one (figure of merit 0) is a cliff that golden sections walk up to.
-    let around = [best - 1, best, best + 1].map(at);
-    let (log, least) = roots::least(around, -largest, TOLERANCE, |log| -merit(log));
-    let is_cliff = coarse[best + 1..].iter().all(|&fom| fom <= 0.0);
-    if is_cliff && before > 0.0 && largest <= before * (1.0 + FLAT) {
-        // Refused because of too many collisions, not of its domain: this is as near to the limit as draws can be
-        // made.
-        let limit = extrapolated([at(best - 1), log], [before, -least]);
-        return share_of_limit(coarse, log, limit, merit);
-    }
-    Some(Candidate { log, merit: -least, kind: Kind::Maximum })
-}
-
-/// Searches 90 % of the limit of a rising figure of merit, which is nearly reached at `far`. In thin media the answer lies
-/// below the range of the coarse search.
-fn share_of_limit(
-    coarse: &[f64],
-    far: f64,
-    limit: f64,
-    merit: impl Fn(f64) -> f64,
-) -> Option<Candidate> {
-    let lacking = |log: f64| merit(log) - SHARE * limit;
-    let [low, high] = match coarse.iter().rposition(|&fom| fom < SHARE * limit) {
-        Some(below) if below + 1 < COARSE => [at(below), at(below + 1).min(far)],
-        Some(below) => [at(below), far],
-        None => {
-            let mut logs = (0..=DECADES).map(|decade| at(0) - decade as f64 * 10f64.ln());
-            let below = logs.find(|&log| lacking(log) < 0.0)?;
-            [below, below + 10f64.ln()]
+    let before = places[step - 1];
+    let (far, limit) = if step == last {
+        match limit(goal, [before, places[last]]) {
+            Some(found) => found,
+            None => return Some(found(places[last], Kind::EndOfSearch)),
         }
+    } else {
+        // A refused place beside the best one is a cliff that golden sections walk up to.
+        let (log, _) = goal.between([before, places[step], places[step + 1]]);
+        // Refused because of too many collisions, not of its domain: this is as near to the limit as draws can be made.
+        let is_cliff = (step + 1..COARSE).all(|step| value(step).is_infinite());
+        if !(is_cliff && value(step - 1) <= value(step) * (1.0 + FLAT)) {
+            return Some(found(log, Kind::Optimum));
+        }
+        (log, extrapolated(goal, [before, log]))
     };
-    let log = roots::root(low, high, lacking);
-    // A root at the edge of the domain may lie on its other side.
-    let inside = [log, log + TOLERANCE].into_iter().find(|&log| merit(log) > 0.0)?;
-    Some(Candidate { log: inside, merit: merit(inside), kind: Kind::ShareOfLimit { limit } })
+    let edge = goal.edge(far.exp(), -1.0, limit / SHARE, FURTHEST);
+    let near = |edge: f64| found(far + edge.ln(), Kind::NearLimit);
+    (edge > 0.0).then(|| Optimum { limit: Some(limit.recip()), ..near(edge) })
 }
 
-/// Follows a rising figure of merit from its last two values to its limit; returns the last `ln σ̂` and the limit;
-/// `None` where it rises without end.
-fn limit(logs: [f64; 2], merits: [f64; 2], merit: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
-    let [mut last, mut now] = [(logs[0], merits[0]), (logs[1], merits[1])];
+/// Follows a falling V·cost from its last two places to its limit; returns the last `ln σ̂` and the limit; `None` where
+/// it falls without end.
+fn limit(goal: &Goal, [mut last, mut now]: [f64; 2]) -> Option<(f64, f64)> {
+    let falls = |[last, now]: [f64; 2], gain: f64| goal.at(last) > goal.at(now) * (1.0 + gain);
     for _ in 0..DECADES {
-        let log = now.0 + 10f64.ln();
-        let further = merit(log);
-        if further <= 0.0 {
+        let further = now + 10_f64.ln();
+        if goal.at(further).is_infinite() {
             // Refused: too many collisions.
             break;
         }
-        (last, now) = (now, (log, further));
-        if further <= last.1 * (1.0 + SETTLED) {
-            return Some((now.0, extrapolated([last.0, now.0], [last.1, now.1])));
+        (last, now) = (now, further);
+        if !falls([last, now], SETTLED) {
+            return Some((now, extrapolated(goal, [last, now])));
         }
     }
-    let is_flat = now.1 <= last.1 * (1.0 + FLAT);
-    is_flat.then(|| (now.0, extrapolated([last.0, now.0], [last.1, now.1])))
+    (!falls([last, now], FLAT)).then(|| (now, extrapolated(goal, [last, now])))
 }
 
-/// The limit of `F = L − c/σ̂` through two points on the axis of `ln σ̂`.
-fn extrapolated(logs: [f64; 2], merits: [f64; 2]) -> f64 {
+/// The limit of V·cost, of which the figure of merit is `F = L − c/σ̂` through two places.
+fn extrapolated(goal: &Goal, logs: [f64; 2]) -> f64 {
+    let merits = logs.map(|log| goal.at(log).recip());
     let gain = (merits[1] - merits[0]).max(0.0);
     let steps = (logs[1] - logs[0]).exp_m1();
-    if steps > 0.0 { merits[1] + gain / steps } else { merits[1] }
+    (if steps > 0.0 { merits[1] + gain / steps } else { merits[1] }).recip()
 }

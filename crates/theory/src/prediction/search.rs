@@ -1,13 +1,13 @@
-//! The one search of advice: the place at which a function is smallest, and the edges of a level around it.
+//! Search of a σ̂, or of a factor on it: the place at which a function is smallest, and the edges of a level around it.
 //!
-//! All searches are on `ln x`, x a σ̂ or a factor on it. Values are kept, so that a search and its edges share them.
+//! All searches are on `ln x`. Values are kept, so that a search and its edges share them.
 
 use std::cell::RefCell;
 use std::f64::consts::{LN_2, LN_10};
 
 use numeric::roots;
 
-/// Share of the least V·cost by which an advised σ̂ may exceed it, where V·cost is flat below the best σ̂.
+/// Share of the least value by which a place near a limit may exceed it.
 pub const ABOVE_LIMIT: f64 = 0.05;
 /// Values from here on cannot be taken: too expensive, unknown, refused.
 pub const BEYOND: f64 = 1e300;
@@ -15,6 +15,8 @@ pub const BEYOND: f64 = 1e300;
 pub const UNKNOWN: f64 = f64::MAX;
 /// Largest factor of an edge: it stands for any larger one.
 pub const MAX_FACTOR: f64 = 1024.0;
+/// Factor beyond which no edge is sought.
+const FURTHEST: f64 = MAX_FACTOR * MAX_FACTOR * MAX_FACTOR;
 /// Tolerance of the best `ln x`, of which V·cost differs by the square, and of an edge.
 const TOLERANCE: f64 = 5e-3;
 /// Factor by which values rise within a few tolerances of a steep minimum.
@@ -25,32 +27,35 @@ const SETTLED: f64 = 1e-3;
 const DESCENT: usize = 9;
 /// Distance in `ln x` within which an edge of the domain makes a place the best.
 const CLIFF: f64 = 0.02;
-/// Factor below the best σ̂ at which a V·cost that is hardly larger makes it a limit.
+/// Factor below the best place at which a value that is hardly larger makes it a limit.
 const FLAT: f64 = 4.0;
-/// Significant digits of an advised σ̂.
+/// Significant digits of an advised place.
 const DIGITS: f64 = 4.0;
 
-/// Kind of an advised σ̂.
+/// Kind of a place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Kind {
-    /// σ̂ is not free.
+    /// Nothing is free.
     #[default]
     Fixed,
-    /// V·cost is smallest there.
+    /// The value is smallest there.
     Optimum,
-    /// V·cost falls towards a limit as σ̂ grows, and is 5 % above its least value there.
+    /// The value falls towards a limit with x, and is a given share above it there.
     NearLimit,
-    /// V·cost still improves at the end of the search.
+    /// The variance is 0 there.
+    NoVariance,
+    /// The value still falls at the end of the search.
     EndOfSearch,
 }
 
 impl Kind {
-    /// The words in tables and files.
+    /// Returns the words in tables and files.
     pub fn words(self) -> &'static str {
         match self {
             Self::Fixed => "",
             Self::Optimum => "optimum",
             Self::NearLimit => "within 5 % of the limit",
+            Self::NoVariance => "no variance",
             Self::EndOfSearch => "end of the search",
         }
     }
@@ -72,12 +77,23 @@ pub struct Goal<'a> {
     f: Box<dyn Fn(f64) -> f64 + Send + 'a>,
     /// `ln x` with the values.
     known: RefCell<Vec<[f64; 2]>>,
+    /// Tolerance of `ln x`.
+    tolerance: f64,
 }
 
 impl<'a> Goal<'a> {
     /// Returns a function of which nothing is known.
     pub fn new(f: impl Fn(f64) -> f64 + Send + 'a) -> Self {
-        Self { f: Box::new(f), known: RefCell::default() }
+        Self::knowing(Vec::new(), TOLERANCE, f)
+    }
+
+    /// Returns a function with known values at some `ln x`, and a tolerance.
+    pub fn knowing(
+        known: Vec<[f64; 2]>,
+        tolerance: f64,
+        f: impl Fn(f64) -> f64 + Send + 'a,
+    ) -> Self {
+        Self { f: Box::new(f), known: RefCell::new(known), tolerance }
     }
 
     /// Returns the value at x.
@@ -85,7 +101,8 @@ impl<'a> Goal<'a> {
         self.at(x.ln())
     }
 
-    fn at(&self, log: f64) -> f64 {
+    /// Returns the value at `ln x`.
+    pub fn at(&self, log: f64) -> f64 {
         let known = self.known.borrow().iter().find(|known| known[0] == log).copied();
         known.map_or_else(
             || {
@@ -95,6 +112,11 @@ impl<'a> Goal<'a> {
             },
             |[_, value]| value,
         )
+    }
+
+    /// Returns `ln x` of the least value between three, and the value.
+    pub fn between(&self, around: [f64; 3]) -> (f64, f64) {
+        roots::least(around, self.at(around[1]), self.tolerance, |log| self.at(log))
     }
 
     /// Returns three `ln x` around the least value of places that are apart by a factor of two, `reach` on each side of
@@ -131,19 +153,15 @@ impl<'a> Goal<'a> {
                 && self.at(around[1] + CLIFF) >= middle
         };
         let is_last = middle >= BEYOND || middle > enough || is_cliff();
-        let (log, value) = if is_last {
-            (around[1], middle)
-        } else {
-            roots::least(around, middle, TOLERANCE, |log| self.at(log))
-        };
+        let (log, value) = if is_last { (around[1], middle) } else { self.between(around) };
         // Where the variance vanishes at one σ̂, the tolerance is too wide.
         let is_steep = |&[place, other]: &[f64; 2]| {
-            (place - log).abs() < 4.0 * TOLERANCE && (STEEP * value..BEYOND).contains(&other)
+            (place - log).abs() < 4.0 * self.tolerance && (STEEP * value..BEYOND).contains(&other)
         };
         let is_steep = value < BEYOND && self.known.borrow().iter().any(is_steep);
         let (log, value) = if is_steep {
-            let around = [log - 2.0 * TOLERANCE, log, log + 2.0 * TOLERANCE];
-            roots::least(around, value, 0.02 * TOLERANCE, |log| self.at(log))
+            let around = [log - 2.0 * self.tolerance, log, log + 2.0 * self.tolerance];
+            roots::least(around, value, 0.02 * self.tolerance, |log| self.at(log))
         } else {
             (log, value)
         };
@@ -156,7 +174,7 @@ impl<'a> Goal<'a> {
         if !is_open && self.of(x / FLAT) <= value * (1.0 + ABOVE_LIMIT) {
             // The search ends where little is gained: the limit itself lies far beyond.
             let level = value.min(self.of(x * MAX_FACTOR)) * (1.0 + ABOVE_LIMIT);
-            let edge = self.edge(x, -1.0, level, f64::INFINITY);
+            let edge = self.edge(x, -1.0, level, FURTHEST);
             // Where no σ̂ is too small, one is as good as another.
             if edge > 0.0 {
                 (x, kind) = (x * edge, Kind::NearLimit);
@@ -176,7 +194,7 @@ impl<'a> Goal<'a> {
     /// Returns the factor on x, below 1 for the sign −1 and above for 1, up to which the value is at most `level`; 0 or
     /// infinite where that is further than `furthest`.
     pub fn edge(&self, x: f64, sign: f64, level: f64, furthest: f64) -> f64 {
-        let (from, furthest) = (x.ln(), furthest.min(MAX_FACTOR.powi(3)).ln());
+        let (from, furthest) = (x.ln(), furthest.ln());
         let mut beyond: Vec<f64> = self.known.borrow().iter().map(|known| known[0]).collect();
         beyond.retain(|log| sign * (log - from) > 0.0);
         beyond.sort_by(|a, b| (sign * a).total_cmp(&(sign * b)));
@@ -185,7 +203,7 @@ impl<'a> Goal<'a> {
         let mut inside = if inside > 0 { beyond[inside - 1] } else { from };
         while outside.is_none() {
             let distance = (inside - from).abs();
-            if distance >= furthest - TOLERANCE {
+            if distance >= furthest - self.tolerance {
                 return if sign < 0.0 { 0.0 } else { f64::INFINITY };
             }
             let next = from + sign * (4.0 * distance).clamp(LN_2, furthest);
@@ -194,13 +212,13 @@ impl<'a> Goal<'a> {
         let mut outside = outside.unwrap_or(inside);
         let above = |log: f64| (self.at(log) / level).ln();
         let mut is_secant = true;
-        while (outside - inside).abs() > TOLERANCE {
+        while (outside - inside).abs() > self.tolerance {
             let slope = (above(outside) - above(inside)) / (outside - inside);
             let share = -above(inside) / slope / (outside - inside);
             let share = if is_secant && (0.02..0.98).contains(&share) { share } else { 0.5 };
             let place = inside + share * (outside - inside);
             let distance = above(place) / slope * sign;
-            if (-TOLERANCE..0.2 * TOLERANCE).contains(&distance) && slope.is_finite() {
+            if (-self.tolerance..0.2 * self.tolerance).contains(&distance) && slope.is_finite() {
                 return (place - from).exp();
             }
             // A secant that does not halve what is left is followed by halves.
