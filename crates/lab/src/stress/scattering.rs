@@ -68,7 +68,7 @@ fn shares(case: &Shared, seen: &mut Seen) -> Option<()> {
     let [light, walk] = Mis { scene, collisions, heuristic, nulls }.points();
     let truth = radiance(&problem);
     let off = (light.powers[1] + walk.powers[1] - truth.value).abs();
-    let error = light.error * light.powers[1] + walk.error * walk.powers[1];
+    let error = light.errors[1] * light.powers[1] + walk.errors[1] * walk.powers[1];
     seen.see(0, over(off, error + truth.error));
     Some(())
 }

@@ -73,14 +73,10 @@ impl RawMoments {
         found.try_into().ok().map(Self)
     }
 
-    /// Raw moments of one resolution; `values[k]` is `E[X^k]`. In units of the k-th power of the mean, which is of that
-    /// resolution, too, its relative error is 1 + k times that of the resolution.
-    pub fn estimated([_, a, b, c, d]: Raw, eighth: f64, relative_error: f64) -> Self {
-        let values = [a, b, c, d, eighth];
-        Self(std::array::from_fn(|i| {
-            let share = f64::from(1 + POWERS[i]) * relative_error;
-            Known::estimated(values[i], share * values[i].abs())
-        }))
+    /// Raw moments with estimates of their relative errors.
+    pub fn estimated(values: [f64; POWERS.len()], errors: [f64; POWERS.len()]) -> Self {
+        let known = |i: usize| Known::estimated(values[i], errors[i] * values[i].abs());
+        Self(std::array::from_fn(known))
     }
 
     /// Returns true if the draw is its mean with no rounding at all.

@@ -28,7 +28,7 @@
 //! model for deep-penetration Monte Carlo calculations*, Nuclear Science and Engineering 65 (1978).
 
 use super::mesh::Panel;
-use crate::prediction::raw::RawMoments;
+use crate::prediction::raw::{POWERS, RawMoments};
 use crate::{Channel, CountDistribution, Mesh, Moments, Prediction, Tails};
 use numeric::Known;
 
@@ -58,11 +58,12 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let raw: [f64; ORDERS] = std::array::from_fn(|k| source.moment(k + 1, v, &after) + after[k]);
     let depth = mesh.optical_depth();
     let t = raw[0];
-    // The mean is known: the error of its quadrature estimates that of the others.
+    // The mean is known: the error of its quadrature estimates that of the others, which grows with the power.
     let missed = (t * depth.value.exp() - 1.0).abs();
     let relative_error = fine.relative_error() + missed + 1e-14;
     let [m1, m2, m3, m4, .., m8] = raw;
-    let raw = RawMoments::estimated([1.0, m1, m2, m3, m4], m8, relative_error);
+    let errors = POWERS.map(|k| f64::from(1 + k) * relative_error);
+    let raw = RawMoments::estimated([m1, m2, m3, m4, m8], errors);
     // Central moments by subtraction: these estimators are not used where the relative spread
     // vanishes, and the loss of digits is part of the error.
     let central = raw.central(Known::estimated(t, relative_error * t), WORST);

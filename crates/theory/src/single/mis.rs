@@ -172,7 +172,7 @@ mod tests {
             let [light, walk] = Mis { scene, collisions, heuristic, nulls: None }.points();
             let truth = scene.radiance();
             let off = (light.powers[1] + walk.powers[1] - truth.value).abs();
-            let error = light.error * light.powers[1] + walk.error * walk.powers[1];
+            let error = light.errors[1] * light.powers[1] + walk.errors[1] * walk.powers[1];
             assert!(off <= error + truth.error, "{heuristic:?}: {off:e} beyond {error:e}");
             assert!(error < 1e-9 * truth.value, "{heuristic:?}: {error:e}");
         }

@@ -54,7 +54,7 @@ pub struct TechniqueMoments {
     /// `E[X^k]`, k = 0 … 4.
     pub powers: Raw,
     /// Relative error bounds of the powers.
-    pub error: f64,
+    pub errors: Raw,
     /// `E[X⁸]`, where it is known.
     pub eighth: Option<f64>,
     /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not computed.
@@ -112,14 +112,17 @@ impl TechniqueMoments {
         let [p1, p2, p3, p4, eighth, n1, n2, n3, n4, roundings @ ..] = found.value;
         let none = technique.found.map_or([0.0; 5], Collisions::lookups_of_escape);
         let off = found.error[..4].iter().zip(roundings).map(|(apart, rounding)| apart + rounding);
-        let relative = off.zip([p1, p2, p3, p4]).map(|(off, power)| off / power.abs());
+        let mut errors = [0.0; 5];
+        for (error, (off, power)) in errors[1..].iter_mut().zip(off.zip([p1, p2, p3, p4])) {
+            *error = SUMS.max(off / power.abs());
+        }
         let lookups = [1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]];
         // A walk that ends at its point may end before.
         let least = if technique.found.is_some() { 0.0 } else { 1.0 };
         Self {
             truth: scene.radiance(),
             powers: [1.0, p1, p2, p3, p4],
-            error: relative.fold(SUMS, f64::max),
+            errors,
             eighth: (!eighth.is_nan()).then_some(eighth),
             lookups: Some(lookups),
             least,
@@ -133,7 +136,9 @@ impl TechniqueMoments {
         Self {
             truth: self.truth,
             powers: added(self.powers, other.powers),
-            error: self.error + other.error,
+            errors: std::array::from_fn(|k| {
+                (0..=k).map(|j| self.errors[j] + other.errors[k - j]).fold(0.0, f64::max)
+            }),
             eighth: None,
             least: self.least + other.least,
             counted: self.counted.max(other.counted),
@@ -157,7 +162,7 @@ impl TechniqueMoments {
         Self {
             truth: self.truth,
             powers,
-            error: self.error.max(other.error),
+            errors: std::array::from_fn(|k| self.errors[k].max(other.errors[k])),
             eighth: None,
             least: 0.0,
             counted: self.counted.max(other.counted),
@@ -169,12 +174,13 @@ impl TechniqueMoments {
 
     /// Prediction for the draws.
     pub fn prediction(&self) -> Prediction {
-        let [_, mean, .., fourth] = self.powers;
-        let raw = RawMoments::estimated(self.powers, self.eighth.unwrap_or(f64::NAN), self.error);
-        let moments = raw.central(Known::estimated(mean, self.error * mean.abs()), BLURRED);
-        // A variance that is smaller than rounding may not be 0, and one beyond the range of doubles not infinite.
-        let is_resolved = moments.relative[2].is_finite() || fourth == f64::INFINITY;
-        let is_known = moments.error < BLURRED && is_resolved && mean.abs() < f64::INFINITY;
+        let [_, mean, second, third, fourth] = self.powers;
+        let [_, a, b, c, d] = self.errors;
+        let values = [mean, second, third, fourth, self.eighth.unwrap_or(f64::NAN)];
+        let raw = RawMoments::estimated(values, [a, b, c, d, 2.0 * d]);
+        let moments = raw.central(Known::estimated(mean, a * mean.abs()), BLURRED);
+        // A variance may be resolved where the higher moments are not.
+        let is_known = moments.error < BLURRED && mean.abs() < f64::INFINITY;
         let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);
         let moments = (is_known && is_full).then_some(moments);
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
@@ -194,7 +200,7 @@ mod tests {
         TechniqueMoments {
             truth: Known::exact(powers[1]),
             powers,
-            error: 1e-14,
+            errors: [0.0, 1e-14, 1e-14, 1e-14, 1e-14],
             eighth: None,
             lookups: Some([1.0, 0.5, 0.5, 0.5, 0.5]),
             least: 0.0,
@@ -234,6 +240,8 @@ mod tests {
         assert!(faint.prediction().channels[0].moments.is_none());
         // 1 ± 1e-5: the variance, 1e-10, is known to three digits, m₄ = 1e-20 to none.
         let narrow = points([1.0, 1.0, 1.0 + 1e-10, 1.0 + 3e-10, 1.0 + 6e-10]);
-        assert!(narrow.prediction().channels[0].moments.is_none());
+        let moments = narrow.prediction().channels[0].moments.expect("a variance");
+        assert!((moments.relative[0] - 1e-10).abs() <= 1e-10 * moments.error);
+        assert!(moments.error < 1e-3 && moments.relative[2].is_infinite(), "{moments:?}");
     }
 }

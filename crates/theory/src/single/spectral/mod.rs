@@ -64,7 +64,7 @@ pub fn balanced(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
         TechniqueMoments { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
     });
     let channel = |(points, chance): (&TechniqueMoments, &f64)| {
-        Channel::bounded(points.truth, points.powers[2] * (1.0 + points.error) / chance)
+        Channel::bounded(points.truth, points.powers[2] * (1.0 + points.errors[2]) / chance)
     };
     let channels = named(alone.iter().zip(heroes).map(channel).collect());
     Prediction { channels, lookups: of_first, ..Prediction::default() }

@@ -219,11 +219,14 @@ impl<'a> Relative<'a> {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| found.value[4 * number + k]);
             // The mean is computed twice.
             let apart = (a / own.truth.value - 1.0).abs();
-            let error = (0..4).map(|k| relative(4 * number + k)).fold(rounding + apart, f64::max);
+            let mut errors = [0.0; 5];
+            for (k, error) in errors[1..].iter_mut().enumerate() {
+                *error = (rounding + apart).max(relative(4 * number + k));
+            }
             let counted = own.counted.max(rounding);
             TechniqueMoments {
                 powers: [1.0, a, b, c, d],
-                error,
+                errors,
                 eighth: None,
                 lookups,
                 counted,
