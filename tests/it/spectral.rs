@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use trueflight::record::{Row, Verdict};
-use trueflight::theory::rod::spectral::critical;
+use trueflight::theory::rod::closed::critical;
 
 use crate::common::{failing, none, predicted, rows};
 

@@ -69,6 +69,10 @@ impl ByRule for Rod {
                 needs,
                 "σ̂ is so near to where E[X²] diverges that theory does not tell on which side",
             )),
+            Err(NoVariance::Underflows) => Err(Refusal::mismatch(
+                "draws whose squares are doubles",
+                "so little leaves the rod that E[X²] is below 1e-292",
+            )),
             Err(NoVariance::TooLong) => Err(Refusal::mismatch(
                 "a rod that theory can cut into 5000 panels",
                 "σ̂ or σ_t is too large on it",

@@ -16,7 +16,7 @@
 //! Engineering 71 (1979).
 
 pub mod bidirectional;
-mod closed;
+pub mod closed;
 pub mod line;
 pub mod lit;
 pub mod moments;
@@ -40,7 +40,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let depth = rod.medium().optical_depth(support);
     let share = |field: &Piecewise| one_value(field, support);
     let closed = share(&rod.albedo).zip(share(&rod.forward));
-    let closed = closed.map(|(albedo, forward)| closed::leaving(depth, albedo, forward));
+    let closed = closed.and_then(|(albedo, forward)| closed::known(depth, albedo, forward, 0.0));
     let needed = |quantity: &&Quantity| closed.is_none() || !has_closed_form(**quantity);
     let open: Vec<Quantity> = rod.channels.iter().filter(needed).copied().collect();
     let mut solved = Vec::new();
@@ -83,6 +83,8 @@ pub enum NoVariance {
     Diverges(f64),
     /// The second moment is next to its divergence, and known to this relative error only; above 1, it may diverge.
     Blurred(f64),
+    /// The second moment is below the least double that has all its digits.
+    Underflows,
     /// The rod has too many panels for theory.
     TooLong,
 }
@@ -100,7 +102,16 @@ pub fn has_variance(
 ) -> Result<(), NoVariance> {
     let walk = Walk::new(mesh, rod, Some(sampling), rule);
     walk.exists(2)?;
-    match powers(&walk, &rod.channels, 2).map_or(f64::INFINITY, |found| blur(&found)) {
+    let Some(found) = powers(&walk, &rod.channels, 2) else {
+        return Err(NoVariance::Blurred(f64::INFINITY));
+    };
+    let is_faint = |known: &Known| known.value * f64::EPSILON < f64::MIN_POSITIVE;
+    // Nothing at all is exact.
+    let underflows = |(known, truth): (&Known, &Known)| is_faint(known) && truth.value > 0.0;
+    if found.iter().any(is_faint) && found.iter().zip(&truth_or_nan(mesh, rod)).any(underflows) {
+        return Err(NoVariance::Underflows);
+    }
+    match blur(&found) {
         blur if blur <= RESOLVED => Ok(()),
         blur => Err(NoVariance::Blurred(blur)),
     }

@@ -1,21 +1,13 @@
-//! Rods of coloured scatterers, as closed forms.
+//! Rods of coloured scatterers, by the [closed form](super::closed) of each albedo.
 //!
-//! ```text
-//! α = 1 − a p_f,  β = a(1 − p_f),  κ² = α² − β²
-//! T = 1/(cosh κτ + (α/κ) sinh κτ),  R = (β/κ) sinh κτ · T
-//! ```
-//!
-//! For a > 1 there is a critical length from which on the moment is infinite: the first τ at
-//! which the denominator of T is 0. `T_r`, the probability to leave after r scatterings that never absorb, are the
-//! coefficients of T(a), found on the circle |a| = 1.
-//!
-//! Source: derived from the two-stream equations of R. Bellman, R. Kalaba, G. M. Wing, *Invariant Imbedding and
-//! Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
+//! `T_r`, the probability to leave after r scatterings that never absorb, are the coefficients of T(a), found on the
+//! circle |a| = 1.
 
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
+use super::closed::{self, continued, critical, leaving};
 use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::problems::rod::channels;
 use crate::problems::{Problem, Rod, SpectralRod};
@@ -27,12 +19,10 @@ use numeric::Known;
 const ROUNDING: f64 = 1e-13;
 /// Maximum probability of orders of scattering that are left out.
 const RARE: f64 = 1e-17;
-/// Maximum number of orders of scattering.
-const MAX_ORDERS: usize = 8192;
-/// Largest relative step of an albedo, along which slopes are taken.
-const STEP: f64 = 1e-6;
 /// Relative error of an albedo that is a product of powers, in units of ε.
 const OF_ALBEDO: f64 = 16.0;
+/// Maximum number of orders of scattering.
+const MAX_ORDERS: usize = 8192;
 /// Rounding of the values on the circle |a| = 1, and of sums over it, in units of ε times the largest.
 const OF_ORDERS: f64 = 16.0;
 /// Maximum albedo.
@@ -56,20 +46,7 @@ impl<'a> Rods<'a> {
 
 impl Body for Rods<'_> {
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]> {
-        let (tau, forward) = (self.depth.value, self.rod.forward);
-        let [r, t] = leaving(tau, albedo, forward)?;
-        let rounding = rounding(tau, albedo, forward);
-        // R′ = βT²,  T′ = −(α − βR)T
-        let (alpha, beta) = (1.0 - albedo * forward, albedo * (1.0 - forward));
-        let slopes = [beta * t * t, (alpha - beta * r).abs() * t];
-        Some(std::array::from_fn(|i| {
-            let value = [r, t][i];
-            let first = slopes[i] * self.depth.error + rounding[i] * value;
-            // R and T have a simple pole at the critical length: a relative error x becomes x/(1 − x).
-            let rest = 1.0 - if value > 0.0 { first / value } else { 0.0 };
-            let error = if rest > 0.0 { first / rest } else { f64::INFINITY };
-            Known { value, error, ..self.depth }
-        }))
+        closed::known(self.depth, albedo, self.rod.forward, OF_ALBEDO)
     }
 
     fn divergence(&self, albedo: f64) -> Option<Divergence> {
@@ -96,124 +73,6 @@ impl Body for Rods<'_> {
         let each = heroes.iter().map(|&(weight, albedo)| Some((weight, of(albedo)?)));
         colours::mixed(each.collect::<Option<Vec<_>>>()?).map(CountDistribution::of_factorial)
     }
-}
-
-/// Reflectance and transmittance of a rod; `None` from its critical length on.
-pub fn leaving(depth: f64, albedo: f64, forward: f64) -> Option<[f64; 2]> {
-    if depth >= critical(albedo, forward) {
-        return None;
-    }
-    let found = continued(depth, Complex64::from(albedo), forward).map(|x| x.re);
-    // Infinite also beyond the range of doubles.
-    found.iter().all(|value| value.is_finite()).then_some(found)
-}
-
-/// Bounds on the relative rounding of R and T, for an albedo that is itself accurate to a few roundings.
-///
-/// ```text
-/// A = (|D₁| + |D₂|)/|D₁ + D₂|,  D₁ + D₂ the denominator
-/// ε (8 + 4|κ|τ + 2|1 − a|τ min(τ, 1/|κ|)) A + 16 ε ∂ ln L/∂ ln a
-/// ```
-///
-/// The first part is the rounding of the terms and of κ², where `1 − a(2p_f − 1)` has the error ε. R and T are
-/// power series in a without negative coefficients: `(L(a + δa)/L(a) − 1)/δ` is no less than the slope. Next to the
-/// critical length δ is so small that neither L doubles.
-fn rounding(depth: f64, albedo: f64, forward: f64) -> [f64; 2] {
-    let here = Form::new(depth, Complex64::from(albedo), forward);
-    let kappa = here.kappa.norm();
-    let amplified = here.below.iter().map(|term| term.norm()).sum::<f64>() / here.sum().norm();
-    let off = 2.0 * (1.0 - albedo).abs() * depth * depth.min(1.0 / kappa);
-    let terms = f64::EPSILON * (8.0 + 4.0 * kappa * depth + off) * amplified;
-    let values = here.leaving().map(|x| x.re);
-    let least = OF_ALBEDO * f64::EPSILON;
-    let mut step = STEP;
-    while step >= least {
-        let near = leaving(depth, albedo * (1.0 + step), forward);
-        if let Some(near) = near.filter(|near| (0..2).all(|i| near[i] <= 2.0 * values[i])) {
-            return std::array::from_fn(|i| {
-                let growth =
-                    if values[i] > 0.0 { (near[i] / values[i] - 1.0).max(0.0) } else { 0.0 };
-                terms + least * growth / step
-            });
-        }
-        step *= 0.25;
-    }
-    [f64::INFINITY; 2]
-}
-
-/// Optical length from which on a rod of an albedo has no finite answer; infinite where every length has one.
-///
-/// ```text
-/// ω² = β² − α²:  atan2(ω, −α)/ω;  for κ² = −ω² > 0 and α < −κ:  artanh(−κ/α)/κ
-/// ```
-pub fn critical(albedo: f64, forward: f64) -> f64 {
-    let (alpha, beta) = (1.0 - albedo * forward, albedo * (1.0 - forward));
-    let square = beta * beta - alpha * alpha;
-    if albedo <= 1.0 {
-        f64::INFINITY
-    } else if square > 0.0 {
-        let omega = square.sqrt();
-        omega.atan2(-alpha) / omega
-    } else if alpha < 0.0 {
-        let kappa = (-square).sqrt();
-        if kappa == 0.0 { -1.0 / alpha } else { (-kappa / alpha).atanh() / kappa }
-    } else {
-        f64::INFINITY
-    }
-}
-
-/// R and T of a complex albedo.
-fn continued(depth: f64, albedo: Complex64, forward: f64) -> [Complex64; 2] {
-    Form::new(depth, albedo, forward).leaving()
-}
-
-/// Parts of the closed form, all times `e^{−κτ}`.
-struct Form {
-    kappa: Complex64,
-    /// `β sinh κτ/κ`.
-    turned: Complex64,
-    decay: Complex64,
-    /// Two terms of the denominator.
-    below: [Complex64; 2],
-}
-
-impl Form {
-    fn new(depth: f64, albedo: Complex64, forward: f64) -> Self {
-        let one = Complex64::from(1.0);
-        let (alpha, beta) = (-albedo * forward + 1.0, albedo * (1.0 - forward));
-        if forward == 1.0 {
-            let decay = (-alpha * depth).exp();
-            let [kappa, turned] = [alpha, Complex64::ZERO];
-            return Self { kappa, turned, decay, below: [one, Complex64::ZERO] };
-        }
-        // (1 − a)(1 − a(2p_f − 1)) cancels less than α² − β²; Re κ ≥ 0.
-        let kappa = ((one - albedo) * (one - albedo * (2.0 * forward - 1.0))).sqrt();
-        let decay = (-kappa * depth).exp();
-        // (1 − e^{−2κτ})/2κ with its limit τ: the difference would lose digits where 2κτ is small.
-        let flat = kappa == Complex64::ZERO;
-        let sine = if flat { depth.into() } else { exp_m1(kappa * (-2.0 * depth)) * -0.5 / kappa };
-        // (1 + e^{−2κτ})/2 + α sine cancels where α is near −κ: α + κ = −β²/(κ − α).
-        let below = if alpha.re < 0.0 {
-            [decay * decay, -(beta * beta * sine / (kappa - alpha))]
-        } else {
-            [(1.0 + decay * decay) * 0.5, alpha * sine]
-        };
-        Self { kappa, turned: beta * sine, decay, below }
-    }
-
-    fn sum(&self) -> Complex64 {
-        self.below[0] + self.below[1]
-    }
-
-    fn leaving(&self) -> [Complex64; 2] {
-        [self.turned / self.sum(), self.decay / self.sum()]
-    }
-}
-
-/// `e^z − 1` without cancellation.
-fn exp_m1(z: Complex64) -> Complex64 {
-    let half = (0.5 * z.im).sin();
-    Complex64::new(z.re.exp_m1() * z.im.cos() - 2.0 * half * half, z.re.exp() * z.im.sin())
 }
 
 /// Number of orders of scattering above which each is rarer than `rare` in a rod of an albedo.
@@ -267,65 +126,4 @@ fn orders(depth: f64, forward: f64) -> Option<(Vec<[f64; 2]>, f64)> {
     };
     let largest = half.iter().flatten().fold(0.0, |most: f64, value| most.max(value.norm()));
     Some(((0..count).map(order).collect(), OF_ORDERS * f64::EPSILON * largest + RARE))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Optical length, albedo, `p_f`, and R and T in 60 digits.
-    const RODS: [([f64; 3], [f64; 2]); 6] = [
-        ([0.00137, 0.985_342_1, 0.97686], [3.123_551_521_056_882e-5, 0.999_948_683_363_419_9]),
-        ([1e-9, 0.5, 0.25], [3.749_999_996_718_750_2e-10, 0.999_999_999_125]),
-        ([2.0, 1.2, 0.5], [0.790_548_620_789_370_4, 0.755_580_766_108_306_3]),
-        ([3.0, 1.02, 0.97], [0.089_184_505_885_870_08, 0.972_710_603_295_732_8]),
-        ([0.00137, 1.5, 0.4], [1.232_325_186_937_013_5e-3, 0.999_452_909_575_633_8]),
-        ([5.0, 0.999, 0.999], [4.945_446_707_036_958e-3, 0.990_067_053_194_265_2]),
-    ];
-
-    /// Thin rods, too, where `1 − e^{−2κτ}` would lose ten digits.
-    #[test]
-    fn rods_of_any_length_keep_their_digits() {
-        for ([depth, albedo, forward], exact) in RODS {
-            let found = leaving(depth, albedo, forward).expect("finite");
-            let rounding = rounding(depth, albedo, forward);
-            for ((found, exact), rounding) in found.iter().zip(exact).zip(rounding) {
-                let off = (found / exact - 1.0).abs();
-                assert!(off <= rounding && rounding < 1e-13, "{depth}, {albedo}: {off:e}");
-            }
-        }
-    }
-
-    /// Optical lengths below the critical one by 1e-7, 1e-9 and 1e-12 of it, and R and T by hyperbolic functions of the
-    /// same doubles in 60 digits (mpmath). Once an error of 5e-13 was stated where 2e-9, 1e-7 and 1e-4 are lost.
-    const NEARLY_CRITICAL: [([f64; 3], [f64; 2]); 12] = [
-        ([5.144_127_495_492_659, 1.2, 0.5], [3_239_940.783_019_762, 3_239_940.116_353_180_7]),
-        ([5.144_128_004_761_331, 1.2, 0.5], [323_994_056.016_177, 323_994_055.349_510_3]),
-        ([5.144_128_009_900_315, 1.2, 0.5], [324_011_921_720.568_85, 324_011_921_719.902_2]),
-        ([4.714_943_847_833_362, 1.5, 0.9], [14_139_436.490_657_32, 14_139_438.823_990_496]),
-        ([4.714_944_314_612_85, 1.5, 0.9], [1_413_944_180.722_759, 1_413_944_183.056_092_5]),
-        ([4.714_944_319_323_079, 1.5, 0.9], [1_414_296_040_152.548_8, 1_414_296_040_154.882]),
-        ([0.675_510_791_304_954_1, 3.0, 0.0], [4_934_537.341_642_346, 4_934_537.008_309_104]),
-        ([0.675_510_858_180_529, 3.0, 0.0], [493_453_645.634_471_95, 493_453_645.301_138_6]),
-        ([0.675_510_858_855_364_4, 3.0, 0.0], [493_443_182_123.989_2, 493_443_182_123.655_8]),
-        ([99.341_210_862_667_6, 1.02, 0.99], [9_868_935.031_094_017, 9_868_935.991_878_334]),
-        ([99.341_220_697_448_45, 1.02, 0.99], [986_892_811.729_506_6, 986_892_812.690_290_9]),
-        ([99.341_220_796_690_34, 1.02, 0.99], [986_179_792_189.990_6, 986_179_792_190.951_3]),
-    ];
-
-    #[test]
-    fn next_to_the_critical_length_the_error_is_what_is_lost() {
-        for ([depth, albedo, forward], exact) in NEARLY_CRITICAL {
-            let found = leaving(depth, albedo, forward).expect("finite");
-            let rounding = rounding(depth, albedo, forward);
-            let distance = 1.0 - depth / critical(albedo, forward);
-            for ((found, exact), rounding) in found.iter().zip(exact).zip(rounding) {
-                let off = (found / exact - 1.0).abs();
-                let context = format!("{depth}, {albedo}: {off:e}, {rounding:e}");
-                assert!(off <= rounding, "{context}");
-                // A few ε of the length and of the albedo, divided by the distance.
-                assert!(rounding * distance < 4096.0 * f64::EPSILON, "{context}");
-            }
-        }
-    }
 }

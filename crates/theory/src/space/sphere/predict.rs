@@ -70,9 +70,13 @@ const UNKNOWN: Answer = Answer {
     ),
 };
 
-/// Prediction for a draw that is 1 with the probability `value`, else 0.
+/// Prediction for a draw that is 1 with the probability `value`, else 0. Where the probability may be 1 its variance is
+/// bounded only.
 fn all_or_nothing(value: Known) -> Prediction {
     let chance = value.value;
+    if 1.0 - chance <= value.error {
+        return Prediction::uncounted(Channel::bounded(value, (chance + value.error).min(1.0)));
+    }
     // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
     let error = 4.0 * value.error / (chance * (1.0 - chance));
     let moments = Moments::of_product(chance, [-chance.ln(); 4], error).graded(value.grade);
