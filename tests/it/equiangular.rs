@@ -158,7 +158,7 @@ fn shares(case: &str, heuristic: Heuristic) -> [[f64; 2]; 2] {
     let collisions = Collisions { medium, sampling: &sampling, scatters: problem.albedo() };
     let nulls = Some(NullPaths::new(&mesh, &sampling, heuristic));
     let mis = Mis { scene, collisions, heuristic, nulls };
-    mis.points().map(|points| [points.powers[1], points.errors[1] * points.powers[1]])
+    mis.points().map(|points| [points.raw.0[0].value, points.raw.0[0].error])
 }
 
 #[test]

@@ -116,6 +116,10 @@ fn moments_relative_to_one_walker_are_those_of_the_references() {
                 (row.experiment.predicted_lookups, reference.lookups),
                 (row.experiment.lookups_variance, reference.lookups_variance),
             ];
+            let found = row.experiment.lookups_variance.expect("known");
+            let stated = row.experiment.lookups_moments_error.expect("stated");
+            let off = (found / reference.lookups_variance - 1.0).abs();
+            assert!(off <= stated && stated < 1e-6, "{}: {off:e} {stated:e}", reference.estimator);
             if let Some(&covariance) = reference.covariance.get(channel) {
                 pairs.push((row.covariance, covariance));
             }

@@ -259,3 +259,19 @@ fn every_ray_past_a_lamp_is_answered() {
         assert!((found.value - fine.value).abs() <= found.error, "{asked:?}: {found:?}, {fine:?}");
     }
 }
+
+/// In a ball that absorbs next to nothing every draw is 1, as far as theory can tell: its variance is bounded, not 0.
+#[test]
+fn a_chance_that_may_be_one_has_a_bound_on_its_variance() {
+    let rows = predicted(
+        "title = \"t\"\n[problem.ball]
+        volume.constant = { extinction = 1e-9, bounds.sphere = { centre = [0, 0, 0], radius = 1.5 } }
+        ray = { origin = [0.5, 0, -3], direction = [0, 0, 1], length = 6 }
+        albedo = 0.999999999999\nphase.isotropic = {}\nlight.environment = {}\nsampling.constant.value = 1e-9
+        estimators = [{ particle = { rule = \"analog\" } }]",
+    );
+    assert_eq!(
+        (rows[0].truth, rows[0].moments_error, rows[0].predicted_variance),
+        (Some(1.0), None, None)
+    );
+}

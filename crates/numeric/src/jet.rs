@@ -25,6 +25,7 @@ pub trait Scalar:
     + Mul<Output = Self>
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
+    + Div<Output = Self>
 {
     /// Number of terms.
     const TERMS: usize;
@@ -39,9 +40,28 @@ pub trait Scalar:
     #[must_use]
     fn exp(self) -> Self;
 
+    /// Returns `ln x`, x > 0.
+    #[must_use]
+    fn ln(self) -> Self;
+
     /// Returns `(1 − e^{−x})/x`.
     #[must_use]
     fn mean_decay(self) -> Self;
+
+    /// Returns `x^k` of a double, or `|x|^k` where k is not a whole number that is constant.
+    #[must_use]
+    fn power_of(self, x: f64) -> Self {
+        let k = self.leading();
+        let is_constant = (1..Self::TERMS).all(|index| self.term(index) == 0.0);
+        #[allow(clippy::cast_possible_truncation)] // a small whole number
+        if is_constant && k == k.round() {
+            Self::from(x.powi(k as i32))
+        } else if x == 0.0 {
+            Self::from(0.0)
+        } else {
+            (self * x.abs().ln()).exp()
+        }
+    }
 
     /// Returns the constant term, by which signs and sizes are judged.
     fn leading(self) -> f64 {
@@ -73,6 +93,11 @@ impl Scalar for f64 {
     }
 
     #[inline]
+    fn ln(self) -> Self {
+        f64::ln(self)
+    }
+
+    #[inline]
     fn mean_decay(self) -> Self {
         if self.abs() < 1e-9 { 1.0 - 0.5 * self } else { -(-self).exp_m1() / self }
     }
@@ -96,6 +121,17 @@ impl<const N: usize> Scalar for Jet<N> {
         let mut taylor = [self.0[0].exp(); N];
         for k in 1..N {
             taylor[k] = taylor[k - 1] / k as f64;
+        }
+        self.composed(taylor)
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        let mut taylor = [self.0[0].ln(); N];
+        let mut power = -1.0;
+        for (k, term) in taylor.iter_mut().enumerate().skip(1) {
+            power /= -self.0[0];
+            *term = power / k as f64;
         }
         self.composed(taylor)
     }
@@ -211,9 +247,36 @@ impl<const N: usize> Div<f64> for Jet<N> {
     }
 }
 
+impl<const N: usize> Div for Jet<N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, divisor: Self) -> Self {
+        let mut quotient = [0.0; N];
+        for k in 0..N {
+            let known: f64 = (0..k).map(|i| quotient[i] * divisor.0[k - i]).sum();
+            quotient[k] = (self.0[k] - known) / divisor.0[0];
+        }
+        Self(quotient)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn logarithms_and_quotients_undo_exponentials_and_products() {
+        let (a, b) = (Jet([0.7, -1.2, 0.4, 2.5]), Jet([1.9, 0.3, -0.8, 0.1]));
+        for (found, exact) in
+            [(a.exp().ln(), a), (a * b / b, a), (a.power_of(2.0).ln(), a * 2.0f64.ln())]
+        {
+            for (found, exact) in found.0.iter().zip(exact.0) {
+                assert!((found - exact).abs() < 1e-14, "{found} {exact}");
+            }
+        }
+        assert_eq!([3.0.power_of(-2.0), 0.5.power_of(9.0), 0.5.power_of(0.0)], [-8.0, 3.0, 0.0]);
+        assert_eq!(Jet([2.0, 0.0]).power_of(-3.0), Jet([9.0, 0.0]));
+    }
 
     /// Series with known terms: those of `e^{2y}`, and of `(1 − e^{−x})/x` from integrals over [0, 1] by a fine rule.
     #[test]

@@ -327,9 +327,27 @@ fn a_rule_is_refused_where_it_has_no_chances() {
     assert!(refused.reason.contains("σ_t ≤ σ̂"), "{}", refused.reason);
 }
 
-/// An answer that theory does not know is not compared with draws.
+/// Where E[X²] underflows it does not diverge, and an expected value has all its digits however small it is.
 #[test]
-fn a_truth_that_is_not_known_passes_nothing() {
+fn faint_rods_say_what_theory_lacks() {
+    let rod = "medium.constant.extinction = 900\nspan = [0, 1]\nalbedo = 0.5\nforward = 0.5
+        sampling.constant.value = 900";
+    let refused = &planned(rod, "weighted")[0];
+    assert_eq!(refused.verdict, Some(Verdict::Refused));
+    assert!(refused.reason.contains("E[X²] is below 1e-292"), "{}", refused.reason);
+    let rows = planned(rod, "analog");
+    let through = rows.iter().find(|row| row.channel == "transmittance").expect("a row");
+    // In 50 digits (mpmath).
+    let [truth, error] = [through.truth, through.truth_error].map(|known| known.expect("known"));
+    assert!(
+        (truth - 4.015_205_257_747_527e-277).abs() <= error && error < 1e-10 * truth,
+        "{truth:e} {error:e}"
+    );
+}
+
+/// What is never drawn is not confirmed by draws.
+#[test]
+fn a_transmittance_that_no_draw_shows_passes_nothing() {
     let text = "medium.constant.extinction = 100\nspan = [0, 3]\nalbedo = 0.7
         sampling.constant.value = 100";
     let rows = planned(text, "analog");

@@ -67,9 +67,8 @@ fn shares(case: &Shared, seen: &mut Seen) -> Option<()> {
     let nulls = has_nulls.then(|| NullPaths::new(&mesh, sampling, heuristic));
     let [light, walk] = Mis { scene, collisions, heuristic, nulls }.points();
     let truth = radiance(&problem);
-    let off = (light.powers[1] + walk.powers[1] - truth.value).abs();
-    let error = light.errors[1] * light.powers[1] + walk.errors[1] * walk.powers[1];
-    seen.see(0, over(off, error + truth.error));
+    let mean = light.raw.0[0] + walk.raw.0[0];
+    seen.see(0, over((mean.value - truth.value).abs(), mean.error + truth.error));
     Some(())
 }
 

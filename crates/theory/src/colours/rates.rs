@@ -125,7 +125,7 @@ impl Rates {
 fn product(k: &[i32], of: impl Fn(usize) -> f64, by: f64) -> f64 {
     let mut found = 1.0;
     for (channel, &k) in k.iter().enumerate().filter(|(_, k)| **k > 0) {
-        found *= power(of(channel), f64::from(k));
+        found *= of(channel).powi(k);
     }
     let total: i32 = k.iter().sum();
     match total {
@@ -133,10 +133,4 @@ fn product(k: &[i32], of: impl Fn(usize) -> f64, by: f64) -> f64 {
         _ if found == 0.0 => 0.0,
         _ => found / by.powi(total - 1),
     }
-}
-
-/// `|x|^k`, or `x^k` where k is an integer.
-pub(crate) fn power(x: f64, k: f64) -> f64 {
-    #[allow(clippy::cast_possible_truncation)] // at most eight
-    if k == k.round() { x.powi(k as i32) } else { x.abs().powf(k) }
 }

@@ -97,17 +97,25 @@ impl CountDistribution {
     }
 
     /// Mean, variance and kurtosis from the smallest number and the raw moments of the rest, with an estimate
-    /// of the relative error of the mean; no probabilities.
+    /// of the relative error of the mean; no probabilities. The raw moment `E[M^k]` has k times the relative error of
+    /// `E[M]`.
     pub fn of_raw(least: f64, [_, mean, square, cube, fourth]: Raw, error: f64) -> Self {
         let variance = square - mean * mean;
         // A number that is nearly constant has a variance of rounding errors.
         if variance <= HIDDEN * square {
             return Self { error, grade: Grade::Estimated, ..Self::always(least + mean) };
         }
-        let fourth = fourth - 4.0 * mean * cube + 6.0 * mean * mean * square - 3.0 * mean.powi(4);
-        let kurtosis = (fourth / (variance * variance)).max(1.0);
-        let (mean, grade, moments_error) = (least + mean, Grade::Estimated, f64::INFINITY);
-        let (poisson, pmf) = (false, Vec::new());
+        let relative = error * (least + mean) / mean;
+        let of_variance =
+            2.0 * relative * (square + mean * mean) + ROUNDING * (square + mean * mean);
+        let (cubes, squares, last) =
+            (4.0 * mean * cube, 6.0 * mean * mean * square, 3.0 * mean.powi(4));
+        let of_fourth = 4.0 * relative * (fourth + cubes + squares + last)
+            + ROUNDING * (fourth + cubes + squares + last);
+        let fourth = (fourth - cubes + squares - last).max(variance * variance);
+        let kurtosis = fourth / (variance * variance);
+        let moments_error = (of_variance / variance).max(of_fourth / fourth);
+        let (mean, grade, poisson, pmf) = (least + mean, Grade::Estimated, false, Vec::new());
         Self { mean, variance, error, grade, moments_error, kurtosis, poisson, pmf }
     }
 }

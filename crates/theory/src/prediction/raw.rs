@@ -12,6 +12,7 @@
 use super::moments::not_negative;
 use crate::{Channel, Moments, Tails};
 use numeric::Known;
+use std::ops::{Add, Mul};
 
 /// `E[N^k]`, k = 0 … 4.
 pub type Raw = [f64; 5];
@@ -36,8 +37,12 @@ pub fn poisson(m: f64) -> Raw {
 }
 
 /// Raw moments of the sum of two independent numbers.
-pub fn added<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|k| (0..=k).map(|j| binomial(k, j) * a[k - j] * b[j]).sum())
+pub fn added<T, const N: usize>(a: [T; N], b: [T; N]) -> [T; N]
+where
+    T: Copy + Add<Output = T> + Mul<Output = T> + Mul<f64, Output = T>,
+{
+    let term = |k: usize, j: usize| a[k - j] * binomial(k, j) * b[j];
+    std::array::from_fn(|k| (1..=k).fold(term(k, 0), |sum, j| sum + term(k, j)))
 }
 
 /// Raw moments from `E[N(N − 1)…(N − k + 1)]`, k = 1 … 4.
@@ -77,6 +82,23 @@ impl RawMoments {
     pub fn estimated(values: [f64; POWERS.len()], errors: [f64; POWERS.len()]) -> Self {
         let known = |i: usize| Known::estimated(values[i], errors[i] * values[i].abs());
         Self(std::array::from_fn(known))
+    }
+
+    /// Raw moments of the sum of two independent draws, without the eighth.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        let of = |Self([one, two, three, four, _]): &Self| {
+            [Known::new(1.0, 0.0), *one, *two, *three, *four]
+        };
+        let [_, one, two, three, four] = added(of(self), of(other));
+        Self([one, two, three, four, Known::UNKNOWN])
+    }
+
+    /// Raw moments of a draw that is one of two with probability ½ each, and twice its score.
+    #[must_use]
+    pub fn either(&self, other: &Self) -> Self {
+        let half = |i: usize| (self.0[i] + other.0[i]) * 2f64.powi(POWERS[i] - 1);
+        Self(std::array::from_fn(half))
     }
 
     /// Returns true if the draw is its mean with no rounding at all.

@@ -25,7 +25,7 @@ const RARE: f64 = 1e-18;
 impl Product<'_> {
     /// Distribution of the number of lookups; `all` are the integrals over the whole of this estimator's own mesh.
     pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountDistribution {
-        let law = all.count();
+        let law = all.count(mesh.relative_error());
         if !(self.laws && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
             return law;
         }

@@ -6,6 +6,7 @@ use media::Medium;
 use numeric::quadrature::{GaussLegendre, dot, legendre};
 use numeric::sum::Sum;
 use numeric::{Known, Span, roots};
+use std::ops::Range;
 
 /// Nodes per panel, unless the medium needs fewer.
 const NODES: usize = 16;
@@ -327,11 +328,20 @@ impl Mesh {
 
     /// `∫ f(t, σ_t)` over the support.
     pub fn integrate(&self, mut f: impl FnMut(f64, f64) -> f64) -> f64 {
+        self.integrate_nodes(|node| f(self.t[node], self.extinction[node]))
+    }
+
+    /// Panels with the numbers of their nodes.
+    pub fn numbered(&self) -> impl Iterator<Item = (Panel<'_>, Range<usize>)> {
+        let n = self.rule.nodes.len();
+        self.panels().enumerate().map(move |(i, panel)| (panel, i * n..(i + 1) * n))
+    }
+
+    /// `∫ f` over the support, from values at nodes by their numbers.
+    pub fn integrate_nodes(&self, mut f: impl FnMut(usize) -> f64) -> f64 {
         let mut sum = Sum::default();
-        for panel in self.panels() {
-            let nodes = panel.t.iter().zip(panel.extinction);
-            let values: Vec<f64> = nodes.map(|(&t, &sigma)| f(t, sigma)).collect();
-            sum.add(self.integral(panel, &values));
+        for (panel, nodes) in self.numbered() {
+            sum.add(self.integral(panel, &nodes.map(&mut f).collect::<Vec<f64>>()));
         }
         sum.value()
     }

@@ -192,14 +192,16 @@ impl Integrals {
     }
 
     /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the distribution is
-    /// Poisson or certain, see [`Product::lookups`].
-    pub fn count(&self) -> CountDistribution {
+    /// Poisson or certain, see [`Product::lookups`]. `relative_error` is that of the integrals.
+    pub fn count(&self, relative_error: f64) -> CountDistribution {
         let mean = self.lookups[0];
         // A walk that nothing ends early makes a Poisson number of lookups.
         if (mean - self.flown).abs() <= 1e-13 * self.flown {
             return CountDistribution::poisson(self.flown);
         }
-        CountDistribution::of_raw(0.0, of_factorial(self.lookups), 0.0)
+        // The error of K is one of e^{−K}, too.
+        let error = relative_error * (1.0 + self.flown);
+        CountDistribution::of_raw(0.0, of_factorial(self.lookups), error)
     }
 }
 

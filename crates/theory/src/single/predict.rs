@@ -51,18 +51,16 @@ impl Technique<'_> {
 pub struct TechniqueMoments {
     /// The radiance by quadrature.
     pub truth: Known,
-    /// `E[X^k]`, k = 0 … 4.
-    pub powers: Raw,
-    /// Relative error bounds of the powers.
-    pub errors: Raw,
-    /// `E[X⁸]`, where it is known.
-    pub eighth: Option<f64>,
+    /// Raw moments of the draw.
+    pub raw: RawMoments,
     /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not computed.
     pub lookups: Option<Raw>,
     /// Number of lookups of every draw, kept apart: beside it rare lookups would lose their digits.
     pub least: f64,
     /// A relative error bound of the mean lookups.
     pub counted: f64,
+    /// Mean number of lookups of shadow rays; `None` where it is not computed.
+    pub shadow_lookups: Option<f64>,
 }
 
 /// Relative rounding error of sums over panels.
@@ -80,24 +78,25 @@ impl TechniqueMoments {
 
     /// Moments of one technique, by panels that end at cuts, too.
     pub fn with_cuts(scene: &Scene, technique: &Technique, cuts: Vec<f64>) -> Self {
-        let mut parts = [MOMENT; 13];
+        let mut parts = [MOMENT; 14];
         parts[5..9].fill(LOOKUPS);
         parts[9..].fill(f64::INFINITY);
         let found = scene.integrate(parts, cuts, &|node| {
             let density = (technique.density)(node);
             if density <= 0.0 {
-                return [0.0; 13];
+                return [0.0; 14];
             }
             let gain = (technique.gain)(node);
             let [camera, errors] = technique.camera(node);
             let [_, a, b, c, d] = node.shadow.powers;
             let shadow = [a, b, c, d, node.shadow.eighth];
             let factor = node.error[0] + (technique.blur)(node) + DENSITY;
-            let lookups = match technique.found {
-                Some(collisions) => collisions.lookups_at(node),
-                None => node.lookups(),
+            let (lookups, shadow_lookups) = match technique.found {
+                Some(collisions) => (collisions.lookups_at(node), node.shadow.lookups[1]),
+                None => (node.lookups(), node.shadow_lookups()),
             };
-            let mut row = [0.0; 13];
+            let mut row = [0.0; 14];
+            row[13] = density * shadow_lookups;
             for (i, k) in POWERS.into_iter().enumerate() {
                 let gathered = density * gain.powi(k);
                 row[i] = gathered * camera[i] * shadow[i];
@@ -109,24 +108,24 @@ impl TechniqueMoments {
             }
             row
         });
-        let [p1, p2, p3, p4, eighth, n1, n2, n3, n4, roundings @ ..] = found.value;
+        let [p1, p2, p3, p4, p8, n1, n2, n3, n4, r1, r2, r3, r4, cast] = found.value;
         let none = technique.found.map_or([0.0; 5], Collisions::lookups_of_escape);
-        let off = found.error[..4].iter().zip(roundings).map(|(apart, rounding)| apart + rounding);
-        let mut errors = [0.0; 5];
-        for (error, (off, power)) in errors[1..].iter_mut().zip(off.zip([p1, p2, p3, p4])) {
-            *error = SUMS.max(off / power.abs());
+        let off =
+            found.error[..4].iter().zip([r1, r2, r3, r4]).map(|(apart, rounding)| apart + rounding);
+        let mut raw = RawMoments([p1, p2, p3, p4, p8].map(|power| Known::estimated(power, 0.0)));
+        for (known, off) in raw.0.iter_mut().zip(off) {
+            known.error = off.max(SUMS * known.value.abs());
         }
         let lookups = [1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]];
         // A walk that ends at its point may end before.
         let least = if technique.found.is_some() { 0.0 } else { 1.0 };
         Self {
             truth: scene.radiance(),
-            powers: [1.0, p1, p2, p3, p4],
-            errors,
-            eighth: (!eighth.is_nan()).then_some(eighth),
+            raw,
             lookups: Some(lookups),
             least,
             counted: SUMS + found.error[5] / (least + lookups[1]),
+            shadow_lookups: Some(cast),
         }
     }
 
@@ -135,14 +134,11 @@ impl TechniqueMoments {
     pub fn plus(&self, other: &Self) -> Self {
         Self {
             truth: self.truth,
-            powers: added(self.powers, other.powers),
-            errors: std::array::from_fn(|k| {
-                (0..=k).map(|j| self.errors[j] + other.errors[k - j]).fold(0.0, f64::max)
-            }),
-            eighth: None,
+            raw: self.raw.plus(&other.raw),
             least: self.least + other.least,
             counted: self.counted.max(other.counted),
             lookups: self.lookups.zip(other.lookups).map(|(a, b)| added(a, b)),
+            shadow_lookups: self.shadow_lookups.zip(other.shadow_lookups).map(|(a, b)| a + b),
         }
     }
 
@@ -155,40 +151,33 @@ impl TechniqueMoments {
             one.lookups.map(|more| added(always, more))
         };
         let half = |a: f64, b: f64| 0.5 * (a + b);
-        let mut powers = self.powers;
-        for (k, (power, other)) in (0..).zip(powers.iter_mut().zip(other.powers)) {
-            *power = 2f64.powi(k) * half(*power, other);
-        }
         Self {
             truth: self.truth,
-            powers,
-            errors: std::array::from_fn(|k| self.errors[k].max(other.errors[k])),
-            eighth: None,
+            raw: self.raw.either(&other.raw),
             least: 0.0,
             counted: self.counted.max(other.counted),
             lookups: lookups(self)
                 .zip(lookups(other))
                 .map(|(a, b)| std::array::from_fn(|k| half(a[k], b[k]))),
+            shadow_lookups: self.shadow_lookups.zip(other.shadow_lookups).map(|(a, b)| half(a, b)),
         }
     }
 
     /// Prediction for the draws.
     pub fn prediction(&self) -> Prediction {
-        let [_, mean, second, third, fourth] = self.powers;
-        let [_, a, b, c, d] = self.errors;
-        let values = [mean, second, third, fourth, self.eighth.unwrap_or(f64::NAN)];
-        let raw = RawMoments::estimated(values, [a, b, c, d, 2.0 * d]);
-        let moments = raw.central(Known::estimated(mean, a * mean.abs()), BLURRED);
+        let [mean, .., fourth, eighth] = self.raw.0;
+        let moments = self.raw.central(mean, BLURRED);
         // A variance may be resolved where the higher moments are not.
-        let is_known = moments.error < BLURRED && mean.abs() < f64::INFINITY;
-        let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);
+        let is_known = moments.error < BLURRED && mean.value.abs() < f64::INFINITY;
+        let is_full = self.raw.0[..4].iter().all(|power| power.value.abs() >= LEAST);
         let moments = (is_known && is_full).then_some(moments);
-        let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
+        let eighth_moment_ratio = eighth.value / (fourth.value * fourth.value);
         // The rarity of the draws that make the variance is not computed.
-        let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
+        let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio };
         let channels = vec![Channel::unbiased(self.truth, moments, tails)];
         let law = |raw| CountDistribution::of_raw(self.least, raw, self.counted);
-        Prediction { channels, lookups: self.lookups.map(law), ..Prediction::default() }
+        let (lookups, shadow_lookups) = (self.lookups.map(law), self.shadow_lookups);
+        Prediction { channels, lookups, shadow_lookups, ..Prediction::default() }
     }
 }
 
@@ -196,24 +185,24 @@ impl TechniqueMoments {
 mod tests {
     use super::*;
 
-    fn points(powers: [f64; 5]) -> TechniqueMoments {
+    fn points(powers: [f64; 4]) -> TechniqueMoments {
+        let [a, b, c, d] = powers;
         TechniqueMoments {
-            truth: Known::exact(powers[1]),
-            powers,
-            errors: [0.0, 1e-14, 1e-14, 1e-14, 1e-14],
-            eighth: None,
+            truth: Known::exact(a),
+            raw: RawMoments::estimated([a, b, c, d, f64::NAN], [1e-14; 5]),
             lookups: Some([1.0, 0.5, 0.5, 0.5, 0.5]),
             least: 0.0,
             counted: 1e-14,
+            shadow_lookups: None,
         }
     }
 
     #[test]
     fn two_coins_make_a_binomial_number() {
         // X = 0 or 1 with probability ½: variance ¼; two of them: mean 1, variance ½, kurtosis 2.
-        let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
+        let coin = points([0.5; 4]);
         let both = coin.plus(&coin);
-        assert_eq!(both.powers, [1.0, 1.0, 1.5, 2.5, 4.5]);
+        assert_eq!(both.raw.0.map(|known| known.value)[..4], [1.0, 1.5, 2.5, 4.5]);
         let prediction = both.prediction();
         let moments = prediction.channels[0].moments.expect("moments");
         assert!((moments.variance() - 0.5).abs() < 1e-15);
@@ -225,7 +214,7 @@ mod tests {
     #[test]
     fn either_of_two_coins_is_one_of_twice_the_worth() {
         // 0, or 2 with probability ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
-        let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
+        let coin = points([0.5; 4]);
         let other = TechniqueMoments { least: 1.0, ..coin };
         let prediction = coin.either(&other).prediction();
         let moments = prediction.channels[0].moments.expect("moments");
@@ -236,10 +225,10 @@ mod tests {
 
     #[test]
     fn a_spread_that_rounding_hides_is_unknown() {
-        let faint = points([1.0, 1.0, 1.0 + 1e-16, 1.0, 1.0]);
+        let faint = points([1.0, 1.0 + 1e-16, 1.0, 1.0]);
         assert!(faint.prediction().channels[0].moments.is_none());
         // 1 ± 1e-5: the variance, 1e-10, is known to three digits, m₄ = 1e-20 to none.
-        let narrow = points([1.0, 1.0, 1.0 + 1e-10, 1.0 + 3e-10, 1.0 + 6e-10]);
+        let narrow = points([1.0, 1.0 + 1e-10, 1.0 + 3e-10, 1.0 + 6e-10]);
         let moments = narrow.prediction().channels[0].moments.expect("a variance");
         assert!((moments.relative[0] - 1e-10).abs() <= 1e-10 * moments.error);
         assert!(moments.error < 1e-3 && moments.relative[2].is_infinite(), "{moments:?}");

@@ -45,6 +45,11 @@ pub struct Node {
 }
 
 impl Node {
+    /// Mean number of lookups of the shadow ray of a draw that scatters here.
+    pub fn shadow_lookups(&self) -> f64 {
+        if self.extinction > 0.0 { self.camera.through[0] * self.shadow.lookups[1] } else { 0.0 }
+    }
+
     /// `E[(N − 1)^k]` of a draw that scatters here. Its first lookup is σ_t here. Unless σ_t is 0, the lookups of
     /// the walk from the origin follow and, if that came through, those of the shadow ray.
     pub fn lookups(&self) -> [f64; 5] {

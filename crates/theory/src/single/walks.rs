@@ -12,8 +12,8 @@ use super::predict::{DENSITY, LOOKUPS, MOMENT, TechniqueMoments};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
 use super::shadows::Among;
-use crate::prediction::raw::{self, Raw, added, binomial, poisson, power};
-use numeric::Span;
+use crate::prediction::raw::{self, RawMoments, added, binomial, poisson, power};
+use numeric::{Known, Span};
 
 /// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.
 pub const ORDERS: [[usize; 4]; 11] = [
@@ -30,21 +30,21 @@ pub const ORDERS: [[usize; 4]; 11] = [
     [4, 0, 0, 0],
 ];
 
-/// Moments on halved panels, and bounds on their relative errors: the difference to the moments on the panels, and the
-/// rounding of the terms, relative to the sums of their absolute values. `powers` returns moments and these sums.
+/// Raw moments on halved panels. Their errors are the difference to the moments on the panels, and the rounding of the
+/// terms, relative to the sums of their absolute values. `powers` returns moments and these sums.
 fn both(
     scene: &Scene,
     panels: &[Span],
     rounding: f64,
     powers: impl Fn(&Chain) -> [[f64; 5]; 2],
-) -> [Raw; 2] {
+) -> RawMoments {
     let [coarse, _] = powers(&Chain::new(scene, panels, Among::Half));
     let [fine, sizes] = powers(&Chain::new(scene, &halved(panels), Among::All));
-    let off = |k: usize| {
+    let known = |k: usize| {
         let rounded = (SUMS + rounding) * sizes[k].abs().max(fine[k].abs());
-        ((fine[k] - coarse[k]).abs() + rounded) / fine[k].abs()
+        Known::of_resolutions(fine[k], coarse[k]).blurred(rounded)
     };
-    [fine, std::array::from_fn(|k| if k == 0 { 0.0 } else { off(k) })]
+    RawMoments([known(1), known(2), known(3), known(4), Known::UNKNOWN])
 }
 
 /// Relative rounding error of running sums over panels.
@@ -147,10 +147,10 @@ pub fn at_collisions(scene: &Scene) -> TechniqueMoments {
         let sizes = if chain.is_signed() { of(chain, false) } else { [0.0; 5] };
         [of(chain, true), sizes]
     };
-    let [powers, errors] = both(scene, &panels, rounding, powers);
+    let raw = both(scene, &panels, rounding, powers);
     let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
     let counted = SUMS + off / cumulants[0];
-    TechniqueMoments { truth, powers, errors, eighth: None, lookups, least: 0.0, counted }
+    TechniqueMoments { truth, raw, lookups, least: 0.0, counted, shadow_lookups: None }
 }
 
 /// Moments of resampled draws: one of the collisions casts a shadow ray for all.
@@ -197,11 +197,11 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> TechniqueMoments {
         }
         [powers, sizes]
     };
-    let [powers, errors] = both(scene, &panels, rounding, powers);
+    let raw = both(scene, &panels, rounding, powers);
     // The collision that casts the ray depends on all of them; without lookups of the ray this does not matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
     let truth = scene.radiance();
-    TechniqueMoments { truth, powers, errors, eighth: None, lookups, least: 0.0, counted: SUMS }
+    TechniqueMoments { truth, raw, lookups, least: 0.0, counted: SUMS, shadow_lookups: None }
 }
 
 /// Moments of draws at `count` points of a density, all with the transmittance of one walk over the whole ray.
@@ -248,12 +248,12 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         // All terms are positive.
         [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
     };
-    let [powers, errors] = both(scene, &found.panels, found.rounding, powers);
+    let raw = both(scene, &found.panels, found.rounding, powers);
     let [first, ..] = found.lookups;
     let each = std::array::from_fn(|k| if k == 0 { 1.0 } else { found.lookups[k - 1] });
     let walk = poisson(scene.camera.collisions());
     let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
     let counted = SUMS + found.off / (1.0 + first);
     let (truth, least) = (scene.radiance(), count as f64);
-    TechniqueMoments { truth, powers, errors, eighth: None, lookups: Some(lookups), least, counted }
+    TechniqueMoments { truth, raw, lookups: Some(lookups), least, counted, shadow_lookups: None }
 }

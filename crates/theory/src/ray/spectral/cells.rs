@@ -20,11 +20,9 @@ impl Spectrum {
     ///
     /// Cells with proportional n are merged.
     pub(super) fn cells(&self) -> Option<Vec<(f64, Vec<f64>)>> {
-        let (mut cells, mut node) = (Vec::<Cell>::new(), 0);
+        let mut cells = Vec::<Cell>::new();
         let scale = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x));
-        for panel in self.mesh.panels() {
-            let here = node..node + panel.t.len();
-            node = here.end;
+        for (panel, here) in self.mesh.numbered() {
             let of_channel = |nulls: &Vec<f64>| {
                 let n = nulls[here.clone()].to_vec();
                 n.iter().all(|x| (x - n[0]).abs() <= CONSTANT * scale).then_some(n[0])

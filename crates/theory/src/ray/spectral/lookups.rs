@@ -55,10 +55,8 @@ impl Spectrum {
 /// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with a probability,
 /// given at every node.
 pub fn survived(mesh: &Mesh, rate: f64, survival: impl Fn(usize) -> f64) -> [f64; 4] {
-    let (mut found, mut node) = (Survival::default(), 0);
-    for panel in mesh.panels() {
-        let nodes = node..node + panel.t.len();
-        node = nodes.end;
+    let mut found = Survival::default();
+    for (panel, nodes) in mesh.numbered() {
         let q: Vec<f64> = nodes.map(|i| rate * survival(i)).collect();
         let lost: Vec<f64> = q.iter().map(|q| rate - q).collect();
         let rates = vec![rate; q.len()];

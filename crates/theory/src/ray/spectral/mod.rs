@@ -27,9 +27,8 @@ mod predict;
 
 use crate::Mesh;
 use crate::colours::Chance;
-use crate::colours::rates::power;
-use numeric::Known;
 use numeric::sum::Sum;
+use numeric::{Known, Scalar};
 
 /// Maximum probability of numbers of null collisions that are left out.
 const RARE: f64 = 1e-19;
@@ -145,83 +144,71 @@ impl Spectrum {
     }
 
     /// `∫ f(n)` over the support; `f` is given the null extinctions of all channels at a node.
-    fn integrate(&self, f: impl Fn(&[f64]) -> f64) -> f64 {
-        let (mut sum, mut node, mut here) = (Sum::default(), 0, vec![0.0; self.channels()]);
-        for panel in self.mesh.panels() {
-            let mut values = Vec::with_capacity(panel.t.len());
-            for _ in panel.t {
-                for (n, nulls) in here.iter_mut().zip(&self.nulls) {
-                    *n = nulls[node];
-                }
-                values.push(f(&here));
-                node += 1;
-            }
-            sum.add(self.mesh.integral(panel, &values));
-        }
-        sum.value()
+    fn integrate<S: Scalar>(&self, f: impl Fn(&[f64]) -> S) -> S {
+        let values: Vec<S> = (0..self.nulls[0].len())
+            .map(|node| f(&self.nulls.iter().map(|nulls| nulls[node]).collect::<Vec<f64>>()))
+            .collect();
+        S::of_terms(|index| self.mesh.integrate_nodes(|node| values[node].term(index)))
     }
 
-    /// `E[Π X_λ^{k_λ}]`; `None` where it is not known.
-    fn moment(&self, k: &[f64]) -> Option<f64> {
-        let total: f64 = k.iter().sum();
-        let product = |n: &[f64]| -> f64 { n.iter().zip(k).map(|(&n, &k)| power(n, k)).product() };
-        let depth: f64 =
-            k.iter().zip(&self.majorants).map(|(k, majorant)| k * majorant).sum::<f64>()
-                * self.length();
-        let of_heroes = |exponent: &dyn Fn(usize) -> f64| -> f64 {
-            (0..self.channels()).map(|hero| self.hero[hero] * exponent(hero).exp()).sum()
+    /// `E[Π X_λ^{k_λ}]`, for numbers k or series; `None` where it is not known.
+    fn moment<S: Scalar>(&self, k: &[S]) -> Option<S> {
+        let [one, none] = [1.0, 0.0].map(S::from);
+        let total = k.iter().fold(none, |sum, &k| sum + k);
+        let product = |n: &[f64]| n.iter().zip(k).fold(one, |of, (&n, k)| of * k.power_of(n));
+        // Times the density of an event, to the power 1 − K; 0 where the event does not occur.
+        let weighted = |found: S, density: f64| {
+            if found.leading() == 0.0 { none } else { found / (total - one).power_of(density) }
+        };
+        let depth = k.iter().zip(&self.majorants).fold(none, |sum, (&k, own)| sum + k * *own);
+        let depth = depth * self.length();
+        let of_heroes = |exponent: &dyn Fn(usize) -> S| {
+            let heroes = self.hero.iter().enumerate();
+            heroes.fold(none, |sum, (hero, &chance)| sum + exponent(hero).exp() * chance)
         };
         // A single channel by its own walk, without the factor of its choice.
-        let own = |channel: usize, k: f64, delta: bool| -> f64 {
-            if k == 0.0 {
-                return 1.0;
+        let own = |channel: usize, k: S, delta: bool| {
+            if k.leading() == 0.0 {
+                return one;
             }
             if delta {
-                return self.depths[channel].exp_neg().value;
+                return S::from(self.depths[channel].exp_neg().value);
             }
             let majorant = self.majorants[channel];
-            let loss = |n: &[f64]| majorant * (power(n[channel] / majorant, k) - 1.0);
+            let loss = |n: &[f64]| (k.power_of(n[channel] / majorant) - one) * majorant;
             self.integrate(loss).exp()
         };
         let found = match self.tracker {
             Tracker::Independent { delta } => {
-                let mut asked = (0..self.channels()).filter(|&channel| k[channel] > 0.0);
+                let mut asked = (0..self.channels()).filter(|&channel| k[channel].leading() > 0.0);
                 match (asked.next(), asked.next()) {
                     (Some(channel), None) => {
-                        self.hero[channel].powf(1.0 - total) * own(channel, total, delta)
+                        (one - total).power_of(self.hero[channel]) * own(channel, total, delta)
                     }
-                    (None, _) => 1.0,
-                    _ => 0.0,
+                    (None, _) => one,
+                    _ => none,
                 }
             }
             Tracker::InTurn { delta } => {
-                k.iter().enumerate().map(|(channel, &k)| own(channel, k, delta)).product()
+                let each = k.iter().enumerate().map(|(channel, &k)| own(channel, k, delta));
+                each.fold(one, |product, moment| product * moment)
             }
             Tracker::Hero { delta } => of_heroes(&|hero| {
                 let majorant = self.majorants[hero];
                 let rate = |n: &[f64]| if delta { n[hero] } else { majorant };
-                let density = |n: &[f64]| {
-                    let found = product(n);
-                    if found == 0.0 { 0.0 } else { found / power(rate(n), total - 1.0) }
-                };
-                (total - 1.0) * majorant * self.length() - depth + self.integrate(density)
+                let gained = self.integrate(|n| weighted(product(n), rate(n)));
+                (total - one) * majorant * self.length() - depth + gained
             }),
             Tracker::Mis { delta: false } => self.by_count(self.integrate(product), depth, total),
             Tracker::Mis { delta: true } => {
                 let atoms = self.atoms.as_ref()?.iter();
-                atoms.map(|(probability, x)| probability * product(x)).sum()
+                atoms.fold(none, |sum, (probability, x)| sum + product(x) * *probability)
             }
             Tracker::Tracking(chance) => {
                 let majorant = self.majorants[0];
                 let loss = |n: &[f64]| {
                     let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
-                    let found = product(&shares);
-                    let per = if found == 0.0 {
-                        0.0
-                    } else {
-                        found / power(chance.of_null(&shares), total - 1.0)
-                    };
-                    majorant * (per - 1.0)
+                    (weighted(product(&shares), chance.of_null(&shares)) - one) * majorant
                 };
                 self.integrate(loss).exp()
             }
@@ -245,7 +232,8 @@ impl Spectrum {
                 if null <= 0.0 {
                     return 0.0;
                 }
-                power(null, k) / power(density, k - 1.0) * (1.0 + k * own / null + (k - 1.0) * off)
+                k.power_of(null) / (k - 1.0).power_of(density)
+                    * (1.0 + k * own / null + (k - 1.0) * off)
             })
         };
         let exponents = match self.tracker {
@@ -276,7 +264,7 @@ impl Spectrum {
     }
 
     /// The sum over the number of collisions, for densities that depend only on that number.
-    fn by_count(&self, nulls: f64, depth: f64, total: f64) -> f64 {
+    fn by_count<S: Scalar>(&self, nulls: S, depth: S, total: S) -> S {
         let length = self.length();
         let log_density = |n: f64| {
             let log = |hero: usize| {
@@ -287,20 +275,23 @@ impl Spectrum {
             let sum: f64 = (0..self.channels()).map(|hero| (log(hero) - largest).exp()).sum();
             largest + sum.ln()
         };
-        let (mut sum, mut n, mut sign) = (Sum::default(), 0.0, 1.0);
-        let (mut largest, mut log) = (0.0f64, 0.0);
+        let (mut sums, mut n, mut sign) = (vec![Sum::default(); S::TERMS], 0.0, 1.0);
+        let (mut largest, mut log) = (0.0f64, S::from(0.0));
+        let negative = nulls.leading() < 0.0;
+        let size = if negative { -nulls } else { nulls };
         loop {
-            let term = (log - depth - (total - 1.0) * log_density(n)).exp();
-            sum.add(sign * term);
-            if nulls == 0.0 || (term < RARE * largest && term < sum.value().abs() * RARE) {
-                return sum.value();
+            let term = (log - depth - (total - S::from(1.0)) * log_density(n)).exp();
+            sums.iter_mut().enumerate().for_each(|(i, sum)| sum.add(sign * term.term(i)));
+            let rare = RARE * largest.min(sums[0].value().abs());
+            if size.leading() == 0.0 || term.leading() < rare {
+                return S::of_terms(|i| sums[i].value());
             }
-            largest = largest.max(term);
+            largest = largest.max(term.leading());
             n += 1.0;
-            log += nulls.abs().ln() - n.ln();
-            sign *= nulls.signum();
+            log = log + (size.ln() - S::from(n.ln()));
+            sign *= if negative { -1.0 } else { 1.0 };
             if n > 1e6 {
-                return f64::NAN;
+                return S::from(f64::NAN);
             }
         }
     }

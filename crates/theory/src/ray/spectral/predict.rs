@@ -8,8 +8,8 @@ use crate::prediction::raw::RawMoments;
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::problems::channels::channel_name;
 use crate::{Channel, Moments, Prediction, Tails};
-use numeric::Known;
 use numeric::sum::Sum;
+use numeric::{Jet, Known, Scalar};
 
 /// Relative rounding error of a moment.
 const ROUNDING: f64 = 1e-13;
@@ -147,16 +147,17 @@ impl Spectrum {
 
     /// With `φ(s) = ln E[|X|^s]`: `D = 2φ′(2) − φ(2)` is the relative entropy of the draws that carry `E[X²]`.
     fn tails(&self, channel: usize) -> Tails {
-        let of = |s: f64| {
-            let mut k = vec![0.0; self.channels()];
-            k[channel] = s;
-            self.moment(&k).map_or(f64::NAN, f64::ln)
+        // φ and its derivative, as a power series.
+        let of = |s: f64, slope: f64| {
+            let mut k = vec![Jet::from(0.0); self.channels()];
+            k[channel] = Jet([s, slope]);
+            self.moment(&k).map_or([f64::NAN; 2], |moment| moment.ln().0)
         };
-        let step = 1e-3;
-        let slope = (of(2.0 + step) - of(2.0 - step)) / (2.0 * step);
+        let [[eighth, _], [fourth, _], [second, slope]] =
+            [of(8.0, 0.0), of(4.0, 0.0), of(2.0, 1.0)];
         Tails {
-            rare_event_size: (2.0 * slope - of(2.0)).max(0.0).exp(),
-            eighth_moment_ratio: (of(8.0) - 2.0 * of(4.0)).exp(),
+            rare_event_size: (2.0 * slope - second).max(0.0).exp(),
+            eighth_moment_ratio: (eighth - 2.0 * fourth).exp(),
         }
     }
 }

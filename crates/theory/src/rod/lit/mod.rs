@@ -61,18 +61,6 @@ pub fn answer(mesh: &Mesh, problem: &LitRod) -> Known {
     found.unwrap_or(Known::UNKNOWN)
 }
 
-/// The mean numbers of real collisions, of null collisions and of shadow lookups of a draw.
-pub fn lookups(
-    mesh: &Mesh,
-    problem: &LitRod,
-    sampling: &Piecewise,
-    techniques: Techniques,
-) -> Option<[Known; 3]> {
-    let walk = walk(mesh, &problem.rod, sampling);
-    let numbers = walk.known(2, &|line| Some(moments::lookups_apart(line, techniques)?.to_vec()));
-    numbers?.try_into().ok()
-}
-
 /// Raw moments of a draw and of its lookups.
 pub struct WalkMoments {
     /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.

@@ -126,17 +126,3 @@ pub fn lookups(line: &Line, techniques: Techniques) -> Option<[f64; 5]> {
     futures.push(flow.solve(source, [0.0; 2]));
     Some(std::array::from_fn(|n| futures[n].entering))
 }
-
-/// The mean numbers of real, of null and of shadow lookups.
-pub fn lookups_apart(line: &Line, techniques: Techniques) -> Option<[f64; 3]> {
-    let flow = line.flow(0)?;
-    let of_shadow = shadow_lookups(line, techniques.shadow)?;
-    let count = |rate: &dyn Fn(usize, &Node) -> f64| {
-        flow.solve(|i, node| [rate(i, node); 2], [0.0; 2]).entering
-    };
-    Some([
-        count(&|_, node| node.sampling * (1.0 - node.means[0])),
-        count(&|_, node| node.sampling * node.means[0]),
-        count(&|i, node| node.scattering() * of_shadow[i][1]),
-    ])
-}

@@ -21,25 +21,25 @@ pub fn lookups(alone: &[TechniqueMoments], heroes: &[f64]) -> Option<Raw> {
     colours::mixed(each.collect::<Option<Vec<_>>>()?)
 }
 
+/// Mean number of lookups of shadow rays, mixed over heroes.
+pub fn shadow_lookups(alone: &[TechniqueMoments], heroes: &[f64]) -> Option<f64> {
+    alone.iter().zip(heroes).map(|(points, chance)| Some(points.shadow_lookups? * chance)).sum()
+}
+
 /// Prediction for one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
 pub fn independent(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
     let lookups = lookups(alone, heroes);
     let each = alone.iter().zip(heroes).map(|(points, chance)| {
-        let mut scaled = TechniqueMoments {
-            lookups,
-            eighth: points.eighth.map(|x| x / chance.powi(7)),
-            ..*points
-        };
-        for (k, power) in (0..).zip(&mut scaled.powers) {
-            *power *= if k > 0 { chance.powi(1 - k) } else { 1.0 };
-        }
-        (scaled.powers, scaled.prediction())
+        let raw = colours::independent(&points.raw, *chance);
+        let prediction = TechniqueMoments { lookups, raw, ..*points }.prediction();
+        ([raw.0[0].value, raw.0[1].value], prediction)
     });
-    let (powers, predictions): (Vec<Raw>, Vec<Prediction>) = each.unzip();
-    let moments: Vec<[f64; 2]> = powers.iter().map(|powers| [powers[1], powers[2]]).collect();
+    let (moments, predictions): (Vec<[f64; 2]>, Vec<Prediction>) = each.unzip();
     let covariances = colours::exclusive(&moments);
     let (channels, lookups) = joined(predictions.into_iter());
-    Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
+    let shadow_lookups = shadow_lookups(alone, heroes);
+    let channels = named(channels);
+    Prediction { channels, lookups, shadow_lookups, covariances, ..Prediction::default() }
 }
 
 /// The channels of several predictions, and the lookups of the first.
@@ -64,8 +64,10 @@ pub fn balanced(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
         TechniqueMoments { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
     });
     let channel = |(points, chance): (&TechniqueMoments, &f64)| {
-        Channel::bounded(points.truth, points.powers[2] * (1.0 + points.errors[2]) / chance)
+        let square = points.raw.second();
+        Channel::bounded(points.truth, (square.value + square.error) / chance)
     };
     let channels = named(alone.iter().zip(heroes).map(channel).collect());
-    Prediction { channels, lookups: of_first, ..Prediction::default() }
+    let (lookups, shadow_lookups) = (of_first, shadow_lookups(alone, heroes));
+    Prediction { channels, lookups, shadow_lookups, ..Prediction::default() }
 }

@@ -21,7 +21,7 @@ use super::joined;
 use crate::colours::rates::{Proposal, Rates};
 use crate::colours::{Chance, named};
 use crate::prediction::Covariance;
-use crate::prediction::raw::{Raw, added, poisson};
+use crate::prediction::raw::{Raw, RawMoments, added, poisson};
 use crate::problems::SingleScattering;
 use crate::single::predict::{LOOKUPS, MOMENT};
 use crate::single::scene::Place;
@@ -219,26 +219,18 @@ impl<'a> Relative<'a> {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| found.value[4 * number + k]);
             // The mean is computed twice.
             let apart = (a / own.truth.value - 1.0).abs();
-            let mut errors = [0.0; 5];
-            for (k, error) in errors[1..].iter_mut().enumerate() {
-                *error = (rounding + apart).max(relative(4 * number + k));
-            }
+            let error = |k: usize| (rounding + apart).max(relative(4 * number + k));
+            let errors = [error(0), error(1), error(2), error(3), f64::NAN];
+            let raw = RawMoments::estimated([a, b, c, d, f64::NAN], errors);
             let counted = own.counted.max(rounding);
-            TechniqueMoments {
-                powers: [1.0, a, b, c, d],
-                errors,
-                eighth: None,
-                lookups,
-                counted,
-                ..*own
-            }
+            TechniqueMoments { raw, lookups, counted, ..*own }
         };
         let points: Vec<TechniqueMoments> = alone.iter().enumerate().map(channel).collect();
         let covariance = |next: usize| {
-            let of = |k: usize| [points[next - 1].powers[k], points[next].powers[k]];
+            let of = |power: usize| [next - 1, next].map(|i| points[i].raw.0[power].value);
             let first = 4 * (alone.len() + next - 1);
             let mixed = [0, 1, 2, 3].map(|j| found.value[first + j]);
-            Covariance::of_raw([next - 1, next], of(1), of(2), mixed)
+            Covariance::of_raw([next - 1, next], of(0), of(1), mixed)
         };
         let covariances = (1..alone.len()).map(covariance).collect();
         let (channels, lookups) = joined(points.iter().map(TechniqueMoments::prediction));

@@ -94,48 +94,33 @@ impl Forward {
         }
         let majorant = self.majorants[0];
         let weights = vec![1.0; self.heroes.len()];
-        let mut nodes = Vec::new();
-        for panel in self.mesh.panels() {
-            for _ in panel.t {
-                let shares = self.shares(nodes.len());
+        let nodes: Vec<_> = (0..self.rates[0].len())
+            .map(|node| {
+                let shares = self.shares(node);
                 let chance = chances.of_events(shares.len(), |channel| shares[channel], &weights);
-                nodes.push((shares, chance));
-            }
-        }
+                (shares, chance)
+            })
+            .collect();
         Some(self.moments(&|powers| {
             let total: i32 = powers.iter().sum();
-            let (mut sum, mut node) = (0.0, 0);
-            for panel in self.mesh.panels() {
-                let here = &nodes[node..node + panel.t.len()];
-                node += panel.t.len();
-                let losses: Vec<f64> = here
-                    .iter()
-                    .map(|(shares, chance)| {
-                        let brings = |event: usize| {
-                            let channels = shares.iter().zip(powers);
-                            let product: f64 = channels.map(|(s, &k)| s[event].powi(k)).product();
-                            if product == 0.0 {
-                                0.0
-                            } else {
-                                product / chance[event].powi(total - 1)
-                            }
-                        };
-                        majorant * (brings(0) + brings(1) - 1.0)
-                    })
-                    .collect();
-                sum += self.mesh.integral(panel, &losses);
-            }
-            sum.exp()
+            let loss = |node: usize| {
+                let (shares, chance) = &nodes[node];
+                let brings = |event: usize| {
+                    let channels = shares.iter().zip(powers);
+                    let product: f64 = channels.map(|(s, &k)| s[event].powi(k)).product();
+                    if product == 0.0 { 0.0 } else { product / chance[event].powi(total - 1) }
+                };
+                majorant * (brings(0) + brings(1) - 1.0)
+            };
+            self.mesh.integrate_nodes(loss).exp()
         }))
     }
 
     /// Moments of multiple importance sampling over heroes; `None` where the rod is not constant in each cell.
     pub fn balanced(&self) -> Option<Moments> {
         let scale = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x));
-        let (mut cells, mut node) = (Vec::new(), 0);
-        for panel in self.mesh.panels() {
-            let here = node..node + panel.t.len();
-            node = here.end;
+        let mut cells = Vec::new();
+        for (panel, here) in self.mesh.numbered() {
             for event in [0, 1] {
                 let of_channel = |rates: &Vec<[f64; 3]>| {
                     let first = rates[here.start][event];
