@@ -164,6 +164,7 @@ fn node_and_weight(n: usize, i: usize) -> (f64, f64) {
 }
 
 /// Sum of the products of two lists.
+#[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

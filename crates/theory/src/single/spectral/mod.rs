@@ -31,7 +31,7 @@ pub fn independent(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
     let lookups = lookups(alone, heroes);
     let each = alone.iter().zip(heroes).map(|(points, chance)| {
         let raw = colours::independent(&points.raw, *chance);
-        let prediction = TechniqueMoments { lookups, raw, ..*points }.prediction();
+        let prediction = TechniqueMoments { raw, lookups, ..*points }.prediction();
         ([raw.0[0].value, raw.0[1].value], prediction)
     });
     let (moments, predictions): (Vec<[f64; 2]>, Vec<Prediction>) = each.unzip();
