@@ -15,9 +15,12 @@ use numeric::quadrature::{GaussLegendre, dot};
 use numeric::sum::Sum;
 
 /// `k σ̂ e^{−K} A^{k−1}`, k = 1 … 4: integrands of the factorial moments of the number of collisions.
+#[inline]
 pub fn factorial_rates(sampling: f64, lost: f64, survived: f64) -> [f64; 4] {
     let alive = sampling * (-lost).exp();
-    [1, 2, 3, 4].map(|k| f64::from(k) * alive * survived.powi(k - 1))
+    // Powers as products: a call for each is a tenth of the time of a lit slab.
+    let square = survived * survived;
+    [alive, 2.0 * alive * survived, 3.0 * alive * square, 4.0 * alive * (survived * square)]
 }
 
 /// Integrals over the panels that a walk has passed.

@@ -57,14 +57,14 @@ impl Directions {
             }
             [0.5 * weights[j] * (even + odd), 0.5 * weights[j] * (even - odd)]
         };
-        let rows = cosines.len();
+        let rows: Vec<Vec<[f64; 2]>> =
+            (0..cosines.len()).map(|i| (0..count).map(|j| parts(i, j)).collect()).collect();
         // The quadrature has errors where it does not resolve the phase function; conservation of energy is
         // enforced.
-        let whole: Vec<f64> = (0..rows)
-            .map(|i| (0..count).map(|j| parts(i, j)).map(|[onward, back]| onward + back).sum())
-            .collect();
-        let onward = Matrix::new(rows, count, |i, j| parts(i, j)[0] / whole[i]);
-        let back = Matrix::new(rows, count, |i, j| parts(i, j)[1] / whole[i]);
+        let sum = |row: &Vec<[f64; 2]>| row.iter().map(|[onward, back]| onward + back).sum();
+        let whole: Vec<f64> = rows.iter().map(sum).collect();
+        let [onward, back] =
+            [0, 1].map(|side| Matrix::new(rows.len(), count, |i, j| rows[i][j][side] / whole[i]));
         Self { cosines, weights, onward, back }
     }
 

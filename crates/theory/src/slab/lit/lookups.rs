@@ -80,7 +80,9 @@ fn stopping(column: &Column, from: usize, direction: &Direction) -> Raw {
         let weight = own.get(i).copied().unwrap_or(node.weight);
         let nulls = (node.nulls - here.nulls) / cosine;
         let rates = factorial_rates(node.sampling / cosine, depth, nulls);
-        factorial.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += weight * rate);
+        for k in 0..4 {
+            factorial[k] += weight * rates[k];
+        }
     }
     of_factorial(factorial)
 }
