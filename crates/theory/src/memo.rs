@@ -10,7 +10,7 @@ pub struct Memo<K, V> {
     most: usize,
 }
 
-impl<K: Eq + Hash, V: Copy> Memo<K, V> {
+impl<K: Eq + Hash, V: Clone> Memo<K, V> {
     /// An empty memo; when it holds `most` answers it drops them all.
     pub const fn new(most: usize) -> Self {
         Self { answers: LazyLock::new(Mutex::default), most }
@@ -26,6 +26,29 @@ impl<K: Eq + Hash, V: Copy> Memo<K, V> {
             }
             answers.entry(key).or_default().clone()
         };
-        *slot.get_or_init(find)
+        slot.get_or_init(find).clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn equal_keys_share_an_answer_and_others_have_their_own() {
+        static SQUARES: Memo<Vec<u64>, u64> = Memo::new(3);
+        let count = AtomicUsize::new(0);
+        let square = |x: u64| {
+            SQUARES.get(vec![x], || {
+                count.fetch_add(1, Ordering::Relaxed);
+                x * x
+            })
+        };
+        assert_eq!([2, 3, 2, 3, 2].map(square), [4, 9, 4, 9, 4]);
+        assert_eq!(count.load(Ordering::Relaxed), 2);
+        // A full memo drops all answers, and computes them again.
+        assert_eq!([4, 5, 2].map(square), [16, 25, 4]);
+        assert_eq!(count.load(Ordering::Relaxed), 5);
     }
 }
