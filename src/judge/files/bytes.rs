@@ -79,6 +79,9 @@ fn looks_single(bytes: &[u8]) -> bool {
     words.len() >= MIN_WORDS && (seen.len() > MIN_WORDS / 4 || seen.contains(&1.0_f32.to_bits()))
 }
 
+/// Minimum number of words with a high half that is not 0, beside low halves that all are: 2⁻²⁰ by accident.
+const MIN_HIGH: usize = 20;
+
 /// Returns whether bytes look like float64.
 ///
 /// As float32 the high half of a float64 of usual size lies between 0.05 and 60, and the low half has any exponent, or is
@@ -97,7 +100,7 @@ fn looks_double(bytes: &[u8]) -> bool {
         high_zeros += usize::from(high == 0.0);
     }
     let all = words.len();
-    let has_few_bits = zeros == all && 2 * high_zeros < all;
+    let has_few_bits = zeros == all && all - high_zeros >= MIN_HIGH;
     all >= MIN_WORDS && (4 * unusual >= all || has_few_bits)
 }
 
@@ -146,5 +149,8 @@ mod tests {
         assert!(matches!(mistaken(&big, 8), Some(Mistaken::Swapped(x)) if x.abs() < 1e-300));
         let ones = bytes(few.iter().map(|x| if *x > 0.5 { 1_f32 } else { 0.0 }.to_le_bytes()));
         assert_eq!(mistaken(&ones, 4), None);
+        // One draw in five is 1, the others 0.
+        let rare = doubles().into_iter().map(|x| if x > 0.8 { 1.0_f64 } else { 0.0 });
+        assert_eq!(mistaken(&bytes(rare.map(f64::to_le_bytes)), 4), Some(Mistaken::Double));
     }
 }
