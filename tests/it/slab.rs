@@ -399,3 +399,65 @@ fn variances_and_kurtoses_of_lookups_are_those_of_the_references() {
         );
     }
 }
+
+/// Returns a slab of constant σ_t = σ̂ on [0, 1] as the text of a case, with all rules.
+fn constant(depth: &str, albedo: &str, phase: &str) -> String {
+    format!(
+        "title = \"a slab\"\nunderpowered = \"allow\"\n[problem.slab]\n\
+         medium.constant.extinction = {depth}\nspan = [0, 1]\nalbedo = {albedo}\nphase.{phase}\n\
+         incidence.collimated.cosine = 0.5\nsampling.constant.value = {depth}\n\
+         estimators = [{{ analog = {{}} }}, {{ non-terminating = {{}} }}]"
+    )
+}
+
+#[test]
+fn thin_slabs_are_answered() {
+    for (depth, albedo, phase) in [
+        ("1e-12", "1", "isotropic = {}"),
+        ("1e-12", "1", "rayleigh = {}"),
+        ("1e-12", "0.9", "henyey-greenstein.g = 0.8"),
+        ("1e-6", "0.9", "isotropic = {}"),
+        ("1e-5", "0.9", "isotropic = {}"),
+    ] {
+        for row in crate::common::predicted(&constant(depth, albedo, phase)) {
+            let context = format!("τ = {depth}, a = {albedo}, {phase}: {}", row.reason);
+            let [truth, error] = [row.truth, row.truth_error].map(|x| x.expect(&context));
+            assert!(error < 1e-4 * truth, "{context}: {error:e}");
+            assert!(row.predicted_variance.is_some(), "{context}");
+        }
+    }
+}
+
+/// A refusal names the limit that is hit and its value.
+#[test]
+fn what_adding_and_doubling_does_not_resolve_is_named() {
+    let sharp = |g: &str| format!("henyey-greenstein.g = {g}");
+    for (depth, albedo, phase, words) in [
+        ("1", "0", sharp("0.5"), ["a reflectance above 1e-70", "it is 0 at a = 0"]),
+        ("1e3", "0.9", sharp("0"), ["a transmittance above 1e-70", "it is 3.75e-229 at a = 0.9"]),
+        ("1e6", "1", sharp("0"), ["a transmittance that", "rounding adds up in so thick a slab"]),
+        ("20", "0.9", sharp("0.99"), ["a reflectance that", "the forward peak of phase"]),
+        ("1", "0.9", sharp("-0.99"), ["a phase function that", "g=-0.99"]),
+    ] {
+        for row in crate::common::predicted(&constant(depth, albedo, &phase)) {
+            for word in words {
+                assert!(row.reason.contains(word), "τ = {depth}, a = {albedo}: {}", row.reason);
+            }
+        }
+    }
+}
+
+/// Theory predicts the mean of the lookups of draws where r varies.
+#[test]
+fn lookups_of_draws_through_a_varying_ratio_are_predicted() {
+    let rows = crate::common::rows(
+        "title = \"an exponential slab\"\nunderpowered = \"allow\"\n[problem.slab]\n\
+         medium.exponential = { extinction = 3, rate = 1 }\nspan = [0, 1]\nalbedo = 0.8\n\
+         phase.henyey-greenstein.g = 0.5\nincidence.collimated.cosine = 0.5\n\
+         sampling.constant.value = 3.2\n\
+         estimators = [{ analog = {} }, { weighted = {} }, { non-terminating = {} }, \
+         { terminating.sampling.constant.value = 2.9 }]",
+        200_000,
+    );
+    crate::common::none(&crate::common::not_passing(&rows, &["lookups"]));
+}

@@ -8,12 +8,12 @@ pub mod walk;
 
 use self::walk::InSlab;
 use super::chromatic::{By, Chromatic, WalkEvents};
+use super::slab::{in_channel, require_answer};
 use crate::setup::channels;
 use crate::setup::walker::Walker;
 use crate::walks::Walk;
 use crate::{Refusal, Setup, estimators};
 use media::Batches;
-use numeric::digits::rounded;
 use theory::Prediction;
 use theory::problems::ChromaticSlab;
 use theory::slab::chromatic::Spectrum;
@@ -26,12 +26,12 @@ fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
 
 /// Checks that theory resolves the energies of all channels.
 fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
-    let Some(channel) = spectrum(setup).blurred() else { return Ok(()) };
-    let needs = "reflectances and transmittances that adding and doubling resolve to 1e-4 (above 1e-70, g ≥ −0.93)";
-    let depth = rounded(setup.fields[channel].mesh.optical_depth().value);
-    let phase = setup.problem.incidences[channel].phase.label();
-    let found = format!("τ = {depth}, phase {phase} in channel {}", channel + 1);
-    Err(Refusal::mismatch(needs, found))
+    let slab = &setup.problem;
+    slab.colours.seen.iter().try_for_each(|&(end, channel)| {
+        let depth = setup.fields[channel].mesh.optical_depth();
+        let (albedo, place) = (slab.colours.albedos[channel], in_channel(channel));
+        require_answer(&slab.incidences[channel], depth, albedo, &[end], &place)
+    })
 }
 
 impl Chromatic for ChromaticSlab {

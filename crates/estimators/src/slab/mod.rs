@@ -10,10 +10,13 @@ pub mod weighted;
 use super::rod::ByRule;
 use crate::recipes::inequality;
 use crate::{Kernel, Refusal, Request, Setup, estimators};
-use numeric::digits::rounded;
+use numeric::Known;
+use numeric::digits::{number, short};
 use theory::collisions::particle::RatioRange;
-use theory::problems::{Problem, Slab};
-use theory::slab::{self, Answer, Existence, Pieces, Walk};
+use theory::problems::Slab;
+use theory::problems::channels::End;
+use theory::problems::slab::Incidence;
+use theory::slab::{self, Answer, Existence, Pieces, Resolution, Walk};
 use theory::{ParticleRule, Prediction};
 
 /// The walk of a rule, as theory describes it.
@@ -35,15 +38,62 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     }
 }
 
-/// The exact answer; `None` where theory does not resolve it.
-fn truth(setup: &Setup<Slab>) -> Option<Answer> {
-    let slab = &setup.problem;
-    if !slab::resolves(&slab.incidence.phase) {
-        return None;
+/// Checks that theory knows what leaves a slab at some ends to 1e-4. `channel` follows the reason.
+///
+/// # Errors
+///
+/// The limit that is exceeded, and the value that exceeds it.
+pub fn require_answer(
+    incidence: &Incidence,
+    depth: Known,
+    albedo: f64,
+    ends: &[End],
+    channel: &str,
+) -> Result<(), Refusal> {
+    let phase = &incidence.phase;
+    let refused = |needs, found: String| Err(Refusal::mismatch(needs, found + channel));
+    if albedo > 0.0 && !slab::resolves(phase) {
+        let needs = "a phase function that 144 directions resolve, or that peaks forward (Henyey–Greenstein of g ≥ −0.93)";
+        return refused(needs, format!("phase {}", phase.label()));
     }
-    let answer = slab::cached(&slab.incidence, setup.fields.mesh.optical_depth(), slab.albedo)?;
-    let is_known = [answer.reflected, answer.transmitted].into_iter().all(slab::is_sharp);
-    is_known.then_some(answer)
+    let place = format!("a = {}, τ = {}", number(albedo), number(depth.value));
+    let Some(answer) = slab::cached(incidence, depth, albedo) else {
+        return refused("a reflectance and a transmittance that are finite", place);
+    };
+    for end in ends {
+        let is_reflected = *end == End::Reflected;
+        let known = if is_reflected { answer.reflected } else { answer.transmitted };
+        if known.value < slab::FAINT {
+            let needs = if is_reflected {
+                "a reflectance above 1e-70"
+            } else {
+                "a transmittance above 1e-70"
+            };
+            return refused(needs, format!("it is {} at {place}", short(known.value, 3)));
+        }
+        if !slab::is_sharp(known) {
+            let needs = if is_reflected {
+                "a reflectance that adding and doubling resolve to 1e-4"
+            } else {
+                "a transmittance that adding and doubling resolve to 1e-4"
+            };
+            let error = short(known.relative_error(), 2);
+            let limit = if Resolution::FINE.cuts(phase) {
+                format!("the forward peak of phase {} is cut off", phase.label())
+            } else if depth.value < 1.0 {
+                "light grazes in so thin a slab".to_owned()
+            } else {
+                "rounding adds up in so thick a slab".to_owned()
+            };
+            return refused(needs, format!("its relative error is {error} at {place}: {limit}"));
+        }
+    }
+    Ok(())
+}
+
+/// Names a channel at the end of a sentence.
+pub fn in_channel(channel: usize) -> String {
+    format!(", in channel {}", channel + 1)
 }
 
 impl ByRule for Slab {
@@ -54,15 +104,9 @@ impl ByRule for Slab {
             let limit = rule.limits(setup.problem.albedo)[1];
             setup.residual().require_ratio_at_most(limit, inequality(rule.range()))?;
         }
-        if truth(setup).is_none() {
-            let needs = "a reflectance and a transmittance above 1e-70 that adding and doubling resolve \
-                         to 1e-4 (a > 0, g ≥ −0.93)";
-            let slab = &setup.problem;
-            let depth = slab.medium().optical_depth(setup.fields.mesh.support()).value;
-            let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());
-            let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
-            return Err(Refusal::mismatch(needs, found));
-        }
+        let (slab, depth) = (&setup.problem, setup.fields.mesh.optical_depth());
+        let ends = [End::Reflected, End::Transmitted];
+        require_answer(&slab.incidence, depth, slab.albedo, &ends, "")?;
         let found = match walk_of(setup, rule).second_moment() {
             Existence::Finite => return Ok(()),
             Existence::Diverges => {
@@ -77,7 +121,9 @@ impl ByRule for Slab {
 
     /// Without an answer its values are NaN, and are refused as such.
     fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
-        walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
+        let (slab, depth) = (&setup.problem, setup.fields.mesh.optical_depth());
+        let answer = slab::cached(&slab.incidence, depth, slab.albedo);
+        walk_of(setup, rule).predict(&answer.unwrap_or(Answer::UNKNOWN))
     }
 
     fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request) {

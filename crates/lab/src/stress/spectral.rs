@@ -16,11 +16,10 @@ use theory::colours::Chance;
 use theory::colours::scatterers::{Body, Spectrum, Tracker};
 use theory::problems::channels::{Colours, End};
 use theory::problems::slab::{Incidence, Light};
-use theory::problems::{ChromaticSlab, SpectralRod, SpectralSlab};
+use theory::problems::{ChromaticSlab, SpectralRod};
 use theory::ray::spectral;
 use theory::rod::spectral::Rods;
-use theory::slab::chromatic;
-use theory::slab::spectral::Slabs;
+use theory::slab::chromatic::{self, Slabs};
 use theory::{Channel, Moments};
 
 /// Directions of the ordinates.
@@ -269,7 +268,7 @@ fn slab(case: &Coloured, seen: &mut Seen) {
     let depth = case.depth.clamp(1e-2, 5.0);
     let medium = homogeneous(depth, 1.0);
     let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
-    let slab = SpectralSlab::new(medium.clone(), albedos, incidence);
+    let colours = Colours::new(albedos, true);
     let (mesh, flown) = (Mesh::new(medium.clone()), Piecewise::constant(depth, medium.span()));
     let exact = |albedo: DoubleDouble| {
         let [here, beyond] = [1.0, 1.002].map(|longer| {
@@ -278,8 +277,8 @@ fn slab(case: &Coloured, seen: &mut Seen) {
         });
         beyond.and(here).map(|slab| slab.energy(light))
     };
-    let body = Slabs::new(&slab, (&mesh, &flown), false);
-    coloured(case, (Box::new(body), &slab.colours), &exact, seen);
+    let body = Slabs { incidence, mesh: &mesh, sampling: &flown, laws: false };
+    coloured(case, (Box::new(body), &colours), &exact, seen);
 }
 
 /// One channel a draw: `E[X^k] = w^{1−k} R`, or T.

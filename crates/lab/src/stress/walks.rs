@@ -62,7 +62,7 @@ pub fn rows(run: Run) -> Vec<Row> {
         "r varies, isotropic, 2 rules, r = 0 … 1.4, τ = 1e-2 … 5, μ₀ = 1e-4 … 1; Peierls' equation";
     rows.extend(run.fill([2, 48], moments(range), Graded::any, graded));
     let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, ∫σ̂ = 1e-3 … 5; same layers, half as many directions again";
-    rows.extend(run.fill([2, 16], moments(range), Ramp::any, ramps));
+    rows.extend(run.fill([2, 16], with_lookups(range), Ramp::any, ramps));
     rows
 }
 
@@ -328,19 +328,24 @@ fn ramps(parameters: &Ramp, seen: &mut Seen) {
     // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
     let depth = 0.5 * flown * (ends[0] + ends[1]);
     let walk = walk(phase, (albedo, rule), Pieces::Graded(cuts.clone()), 1.4, depth);
-    let of_power = |k: u32| -> Option<Leaving> {
+    let of_power = |k: u32| -> Option<Vec<[DoubleDouble; 3]>> {
         let [coarse, fine] = cuts
             .each_ref()
             .map(|cut| slab::energies(&phase, lights, &slices(cut, &walk, k), LAYERED));
         let both = |(coarse, fine): (Energy, Energy)| {
-            let sides =
-                [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
-            sides.map(|[coarse, fine]| DoubleDouble::from(fine + (fine - coarse) / 3.0))
+            let all = |energy: Energy| [energy.reflected, energy.transmitted, energy.score];
+            let (coarse, fine) = (all(coarse), all(fine));
+            [0, 1, 2]
+                .map(|i| [coarse[i], fine[i]])
+                .map(|[coarse, fine]| DoubleDouble::from(fine + (fine - coarse) / 3.0))
         };
         Some(coarse?.into_iter().zip(fine?).map(both).collect())
     };
-    let leaving = (1..=4).map_while(of_power).collect();
-    compare(seen, &walk, lights, &Exact { leaving, collisions: None });
+    let leaving =
+        (1..=4).map_while(&of_power).map(|all| all.into_iter().map(|[r, t, _]| [r, t]).collect());
+    let collisions = of_power(0).map(|all| all.into_iter().map(|[.., score]| score).collect());
+    let exact = Exact { leaving: leaving.collect(), collisions };
+    compare(seen, &walk, lights, &exact);
 }
 
 /// Lights that graze, or none of them: layers are thinner for all where one does.

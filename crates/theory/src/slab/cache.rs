@@ -1,60 +1,50 @@
-//! Memo of answers: experiments of one slab share them.
+//! Memos of slabs: experiments, rules and powers with equal slabs share their answers.
 
-use super::{Answer, answers};
+use super::{Answer, Light, Resolution, answers};
+use crate::Kernel;
 use crate::memo::Memo;
 use crate::problems::slab::Incidence;
-use numeric::Known;
+use media::phase::Phase;
+use numeric::{Known, Scalar};
 
-/// Key of an answer: the bits of all numbers, and the label of the phase function, which contains every digit of
-/// its settings.
-#[derive(PartialEq, Eq, Hash)]
-struct Key {
-    cosine: Option<u64>,
-    phase: String,
-    depth: [u64; 2],
-    albedo: u64,
+/// Key of a slab: the label of the phase function, which contains every digit of its settings, and the bits of all
+/// numbers.
+pub(super) type Key = (String, Vec<u64>);
+
+/// Answers to [`cached`].
+static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
+/// Answers for stacks of layers.
+pub(super) static STACKS: Memo<Key, Option<Vec<Answer>>> = Memo::new(1024);
+/// Factorial moments of the numbers of collisions in stacks of layers.
+pub(super) static COUNTS: Memo<Key, Option<Vec<[Known; 4]>>> = Memo::new(1024);
+
+/// Returns the key of lights and further numbers.
+fn key(phase: &Phase, lights: &[Light], numbers: impl IntoIterator<Item = f64>) -> Key {
+    let cosines = lights.iter().map(|light| light.cosine().unwrap_or(-1.0));
+    let numbers = std::iter::once(lights.len() as f64).chain(cosines).chain(numbers);
+    (phase.label(), numbers.map(f64::to_bits).collect())
 }
 
-static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
+/// Returns the key of a stack of layers at a resolution.
+pub(super) fn of_stack<S: Scalar>(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Kernel<S>],
+    resolution: Resolution,
+) -> Key {
+    let Resolution { faintest, directions, first_layer, gains, peaked } = resolution;
+    let counts = [S::TERMS, directions, peaked].map(|count| count as f64);
+    let numbers = [faintest, first_layer].into_iter().chain(gains).chain(counts);
+    let of_slice = |&Kernel { rate, straight, scattered, score }: &Kernel<S>| {
+        let terms = (0..S::TERMS).flat_map(move |i| [straight.term(i), scattered.term(i)]);
+        [rate, score].into_iter().chain(terms)
+    };
+    key(phase, lights, numbers.chain(slices.iter().flat_map(of_slice)))
+}
 
 /// Returns the answer; it is computed only once, also if several threads need it.
 pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
-    let key = Key {
-        cosine: incidence.light.cosine().map(f64::to_bits),
-        phase: incidence.phase.label(),
-        depth: [depth.value.to_bits(), depth.error.to_bits()],
-        albedo: albedo.to_bits(),
-    };
-    ANSWERS.get(key, || answer(incidence, depth, albedo))
-}
-
-fn answer(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
-    answers(&incidence.phase, &[incidence.light], depth, albedo)?.pop()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::problems::slab::Light;
-    use media::phase::{Phase, isotropic::Isotropic};
-
-    #[test]
-    fn what_differs_is_kept_apart() {
-        let of = |light, depth: f64, albedo| {
-            let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
-            let found = cached(&incidence, Known::exact(depth), albedo);
-            assert_eq!(found, answer(&incidence, Known::exact(depth), albedo));
-            assert_eq!(found, cached(&incidence, Known::exact(depth), albedo));
-            found.expect("finite").reflected.value
-        };
-        let values = [
-            of(Light::Diffuse, 0.5, 0.9),
-            of(Light::Collimated(0.5), 0.5, 0.9),
-            of(Light::Collimated(0.5), 0.6, 0.9),
-            of(Light::Collimated(0.5), 0.5, 0.8),
-        ];
-        for (i, x) in values.iter().enumerate() {
-            assert!(values[..i].iter().all(|y| x != y));
-        }
-    }
+    let Incidence { light, phase } = incidence;
+    let key = key(phase, &[*light], [depth.value, depth.error, albedo]);
+    ANSWERS.get(key, || answers(phase, &[*light], depth, albedo)?.pop())
 }

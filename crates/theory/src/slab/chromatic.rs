@@ -1,4 +1,12 @@
-//! Prediction for slabs in which every channel has a medium of its own, with draws that score all of them.
+//! Slabs of several channels, with draws that score all of them: coloured scatterers in one medium, and channels with a
+//! medium of their own.
+//!
+//! **One medium.** Moments are those of [`crate::colours::scatterers`]. An albedo above 1 may be too large for the depth of
+//! the slab: the slab is critical, and the moment infinite. With anisotropic phase functions, albedos above 1 are solved
+//! to 1e-4. Orders of scattering are known for isotropic scattering. With other phase functions multiple importance
+//! sampling has a mean, and a bound on the variance, as its draws never exceed 1/w.
+//!
+//! **Several media.**
 //!
 //! ```text
 //! R_λ and T_λ    those of the slab of the channel λ, by adding and doubling
@@ -12,23 +20,149 @@
 //! Source: derived from B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::{Pieces, Walk};
+use super::{Pieces, Resolution, Walk};
 use crate::colours::bound::{self, Flight, SecondMomentRates};
 use crate::colours::rates::{Proposal, Rates};
+use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::colours::{self};
+use crate::memo::Memo;
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::ChromaticSlab;
 use crate::problems::channels::End;
-use crate::problems::slab::Light;
-use crate::{Channel, CountDistribution, Mesh, ParticleRule, Prediction, slab};
+use crate::problems::slab::{Incidence, Light};
+use crate::{Channel, CountDistribution, Kernel, Mesh, ParticleRule, Prediction, slab};
 use media::Piecewise;
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
 use numeric::{Known, Span, exponential_integrals};
 
-/// A slab, with the mesh and σ̂ of each channel.
+/// Relative error of orders of scattering beyond that which their sum shows.
+const OF_ORDERS: f64 = 2e-12;
+/// Relative distance to a critical depth within which theory does not resolve on which side of it a slab is.
+const NEAR: f64 = 1e-3;
+/// Relative error of critical albedos.
+const SHARP: f64 = 1e-7;
+
+/// A slab of one medium with its mesh and σ̂.
+pub struct Slabs<'a> {
+    /// Light and phase function.
+    pub incidence: Incidence,
+    /// The medium.
+    pub mesh: &'a Mesh,
+    /// σ̂.
+    pub sampling: &'a Piecewise,
+    /// True if the distribution of lookups is computed; otherwise they have a mean only.
+    pub laws: bool,
+}
+
+impl Slabs<'_> {
+    fn depth(&self) -> Known {
+        self.mesh.optical_depth()
+    }
+
+    /// Analog walks of several heroes, given their probabilities and albedos.
+    fn walks(&self, heroes: &[(f64, f64)]) -> impl Iterator<Item = (f64, Walk)> {
+        let kinks = ParticleRule::Analog.kinks(1.0);
+        let pieces = Pieces::new(self.mesh, self.sampling, &kinks, &[self.incidence.light]);
+        let depth = self.depth().value;
+        heroes.iter().map(move |&(weight, albedo)| {
+            (weight, Walk::analog(self.incidence, albedo, pieces.clone(), depth, self.laws))
+        })
+    }
+}
+
+/// An answer of moderate precision, `None` where it is infinite: with sharp phase functions an exact one takes
+/// seconds.
+fn coarse(incidence: &Incidence, depth: f64, albedo: f64) -> Option<[Known; 2]> {
+    let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 0.0 };
+    let found = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
+    Some([found[0].reflected, found[0].transmitted])
+}
+
+fn is_isotropic(incidence: &Incidence) -> bool {
+    incidence.phase == Phase::Isotropic(Isotropic)
+}
+
+/// Returns true if a slab of an optical depth has a finite answer.
+fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
+    let light = Incidence { light: Light::Diffuse, ..*incidence };
+    if is_isotropic(incidence) {
+        slab::cached(&light, Known::exact(depth), albedo).is_some()
+    } else {
+        coarse(&light, depth, albedo).is_some()
+    }
+}
+
+/// Albedo from which on a slab has no finite answer.
+fn critical(incidence: &Incidence, depth: f64) -> f64 {
+    let (mut low, mut high) = (1.0, 2.0);
+    while is_finite(incidence, depth, high) && high < 1e6 {
+        (low, high) = (high, 2.0 * high);
+    }
+    while high - low > SHARP * low {
+        let middle = 0.5 * (low + high);
+        if is_finite(incidence, depth, middle) { low = middle } else { high = middle }
+    }
+    high
+}
+
+static CRITICAL: Memo<(String, u64), f64> = Memo::new(256);
+
+impl Body for Slabs<'_> {
+    fn leaving(&self, albedo: f64) -> Option<[Known; 2]> {
+        let answer = slab::cached(&self.incidence, self.depth(), albedo)?;
+        Some([answer.reflected, answer.transmitted])
+    }
+
+    fn power(&self, albedo: f64) -> Option<[Known; 2]> {
+        if is_isotropic(&self.incidence) || albedo <= 1.0 {
+            return self.leaving(albedo);
+        }
+        coarse(&self.incidence, self.depth().value, albedo)
+    }
+
+    fn divergence(&self, albedo: f64) -> Option<Divergence> {
+        let (incidence, depth) = (&self.incidence, self.depth().value);
+        if albedo <= 1.0 {
+            return None;
+        }
+        let near = depth * (1.0 + NEAR);
+        if is_finite(incidence, near, albedo) && self.power(albedo).is_some() {
+            return None;
+        }
+        let key = (incidence.phase.label(), depth.to_bits());
+        let critical = CRITICAL.get(key, || critical(incidence, depth));
+        // With its peak cut off, light along the slab may grow that the whole phase function turns away.
+        let is_cut = Resolution::COARSE.cuts(&incidence.phase);
+        let is_infinite = !is_cut && !is_finite(incidence, depth * (1.0 - NEAR), albedo);
+        Some(if is_infinite {
+            Divergence::BeyondAlbedo { critical, albedo }
+        } else {
+            Divergence::NearAlbedo { critical, albedo }
+        })
+    }
+
+    fn orders(&self) -> Option<Orders> {
+        if !is_isotropic(&self.incidence) {
+            return None;
+        }
+        let depth = self.depth();
+        let found = slab::orders::orders(self.incidence.light, depth.value)?;
+        let steepest = self.incidence.light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
+        let all: f64 = found.iter().flatten().sum();
+        let error = OF_ORDERS + (all - 1.0).abs();
+        Some(Orders { found, error, each: 0.0, blur: steepest * depth.error })
+    }
+
+    fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
+        Walk::mixed_lookups(self.walks(heroes))
+    }
+}
+
+/// A slab with a medium for each channel.
 pub struct Spectrum<'a> {
     problem: &'a ChromaticSlab,
-    media: Vec<(&'a Mesh, &'a Piecewise)>,
-    laws: bool,
+    slabs: Vec<Slabs<'a>>,
 }
 
 impl<'a> Spectrum<'a> {
@@ -38,26 +172,16 @@ impl<'a> Spectrum<'a> {
         media: Vec<(&'a Mesh, &'a Piecewise)>,
         laws: bool,
     ) -> Self {
-        Self { problem, media, laws }
-    }
-
-    /// First channel with an answer that is not known well enough for a comparison with draws.
-    pub fn blurred(&self) -> Option<usize> {
-        let is_sharp = |&(end, channel): &(End, usize)| {
-            let is_resolved = slab::resolves(&self.problem.incidences[channel].phase);
-            is_resolved && slab::is_sharp(self.truth(end, channel))
-        };
-        self.problem.colours.seen.iter().find(|seen| !is_sharp(seen)).map(|seen| seen.1)
+        let slab = |((mesh, sampling), &incidence)| Slabs { incidence, mesh, sampling, laws };
+        let slabs = media.into_iter().zip(&problem.incidences).map(slab).collect();
+        Self { problem, slabs }
     }
 
     /// Energy that leaves a channel's slab at an end; NaN where it is unknown.
     fn truth(&self, end: End, channel: usize) -> Known {
-        let (incidence, depth) =
-            (&self.problem.incidences[channel], self.media[channel].0.optical_depth());
-        let answer = slab::cached(incidence, depth, self.problem.colours.albedos[channel]);
-        answer.map_or(Known::estimated(f64::NAN, f64::INFINITY), |answer| match end {
-            End::Reflected => answer.reflected,
-            End::Transmitted => answer.transmitted,
+        let found = self.slabs[channel].leaving(self.problem.colours.albedos[channel]);
+        found.map_or(slab::Answer::UNKNOWN.reflected, |found| {
+            found[usize::from(end == End::Transmitted)]
         })
     }
 
@@ -107,7 +231,7 @@ impl<'a> Spectrum<'a> {
         if !share.is_finite() {
             return Err(f64::INFINITY);
         }
-        let deep = largest * self.media[0].0.support().length();
+        let deep = largest * self.slabs[0].mesh.support().length();
         let flight = |leaves: f64| Flight { leaves, collides: 1.0 - leaves };
         let first = match problem.incidences[0].light {
             Light::Collimated(cosine) => flight((-deep / cosine).exp()),
@@ -123,24 +247,24 @@ impl<'a> Spectrum<'a> {
     /// limit.
     fn largest_rates(&self, walk: Proposal, channel: usize, phi: f64) -> [f64; 2] {
         let majorants =
-            self.media.iter().map(|(_, sampling)| sampling.single_value().unwrap_or_default());
+            self.slabs.iter().map(|slab| slab.sampling.single_value().unwrap_or_default());
         let rates =
             Rates { majorants: majorants.collect(), albedos: self.problem.colours.albedos.clone() };
         let ends =
-            self.media.iter().flat_map(|(mesh, _)| mesh.panels().map(|panel| panel.span.from));
-        let mesh = self.media[0].0.cut(&ends.collect::<Vec<f64>>());
+            self.slabs.iter().flat_map(|slab| slab.mesh.panels().map(|panel| panel.span.from));
+        let mesh = self.slabs[0].mesh.cut(&ends.collect::<Vec<f64>>());
         let at = |t: f64| {
             let here: Vec<f64> =
-                self.media.iter().map(|(mesh, _)| mesh.medium().extinction(t)).collect();
+                self.slabs.iter().map(|slab| slab.mesh.medium().extinction(t)).collect();
             let SecondMomentRates { lost, scattered, .. } =
                 bound::square(&rates, walk, channel, &here, phi);
             [lost, lost, scattered]
         };
         let within = |part: Span| {
             let below = rates.majorants.iter().map(|&majorant| Span::new(0.0, majorant));
-            let media = self.media.iter().zip(below);
+            let slabs = self.slabs.iter().zip(below);
             let here: Vec<Span> =
-                media.map(|((mesh, _), below)| mesh.extremes(part).intersect(below)).collect();
+                slabs.map(|(slab, below)| slab.mesh.extremes(part).intersect(below)).collect();
             bound::square_within(&rates, walk, channel, &here, phi)
         };
         let nothing = bound::NOTHING * rates.majorants[0];
@@ -169,16 +293,11 @@ impl<'a> Spectrum<'a> {
     }
 
     fn lookups(&self, heroes: &[f64]) -> Option<CountDistribution> {
-        let kinks = ParticleRule::Analog.kinks(1.0);
-        let walk = |(channel, &weight): (usize, &f64)| {
-            let ((mesh, sampling), incidence) =
-                (self.media[channel], self.problem.incidences[channel]);
-            let albedo = self.problem.colours.albedos[channel];
-            let pieces = Pieces::new(mesh, sampling, &kinks, &[incidence.light]);
-            let depth = mesh.optical_depth().value;
-            (weight, Walk::analog(incidence, albedo, pieces, depth, self.laws))
+        let parts = self.slabs.iter().zip(heroes).zip(&self.problem.colours.albedos);
+        let walk = |((slab, &weight), &albedo): ((&'_ Slabs<'_>, _), _)| {
+            slab.walks(&[(weight, albedo)]).collect::<Vec<_>>()
         };
-        Walk::mixed_lookups(heroes.iter().enumerate().map(walk))
+        Walk::mixed_lookups(parts.flat_map(walk))
     }
 }
 
@@ -186,11 +305,10 @@ impl<'a> Spectrum<'a> {
 mod tests {
     use super::*;
     use crate::colours::Chance;
-    use crate::problems::slab::Incidence;
+    use media::constant::Constant;
     use media::exponential::Exponential;
     use media::gaussian::Gaussian;
-    use media::phase::Phase;
-    use media::phase::isotropic::Isotropic;
+    use media::phase::henyey_greenstein::HenyeyGreenstein;
     use media::sines::{Wave, Waves};
     use media::{Medium, OpticalDepth};
     use std::sync::Arc;
@@ -254,6 +372,29 @@ mod tests {
                     assert!(bound <= 1.02 * largest, "{context}");
                 }
             }
+        }
+    }
+
+    /// Next to the critical albedo theory does not tell on which side a slab is, on either side of it.
+    #[test]
+    fn next_to_the_critical_albedo_nothing_is_said_to_be_infinite() {
+        let peaked = HenyeyGreenstein::new(0.5).map(Phase::HenyeyGreenstein).expect("in range");
+        for phase in [Phase::Isotropic(Isotropic), peaked] {
+            let incidence = Incidence { light: Light::Collimated(0.6), phase };
+            let span = Span::new(0.0, 1.7);
+            let medium = Medium::new(Arc::new(Constant { extinction: 1.0 }), span, span);
+            let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(1.0, span));
+            let slabs = Slabs { incidence, mesh: &mesh, sampling: &sampling, laws: false };
+            let at = critical(&incidence, 1.7);
+            assert_eq!(slabs.divergence(0.99 * at), None);
+            for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-4] {
+                let albedo = share * at;
+                let near = Divergence::NearAlbedo { critical: at, albedo };
+                assert_eq!(slabs.divergence(albedo), Some(near), "{share}");
+            }
+            let albedo = 1.01 * at;
+            let beyond = Divergence::BeyondAlbedo { critical: at, albedo };
+            assert_eq!(slabs.divergence(albedo), Some(beyond));
         }
     }
 }

@@ -29,9 +29,9 @@ pub mod layer;
 pub mod lit;
 pub mod orders;
 pub mod pieces;
-pub mod spectral;
 #[cfg(test)]
 mod tests;
+mod thin;
 pub mod walk;
 
 use crate::Kernel;
@@ -156,6 +156,11 @@ impl Resolution {
         self.of(phase).peaked > 0
     }
 
+    /// Returns the number of directions for a phase function.
+    pub fn count(self, phase: &Phase) -> usize {
+        self.of(phase).directions(phase).0
+    }
+
     /// Returns the number of directions, and the share of the phase function that goes straight on.
     fn directions(&self, phase: &Phase) -> (usize, f64) {
         if self.peaked > 0 {
@@ -168,7 +173,7 @@ impl Resolution {
 /// Maximum relative error of an exact answer that draws are compared with.
 const BLURRED: f64 = 1e-4;
 /// The smallest exact answer: below, the fourth power of a draw's mean is no double of full length.
-const FAINT: f64 = 1e-70;
+pub const FAINT: f64 = 1e-70;
 
 /// Returns true if an answer is known well enough for a comparison with draws.
 pub fn is_sharp(known: Known) -> bool {
@@ -193,9 +198,6 @@ const ROUNDING: f64 = 2e-13;
 /// alone, with a factor of 1, as did one of 128 others, by five times. With five eighths of thirty-two, divided by
 /// twelve, no more than 0.72 was reached.
 const SAFETY: f64 = 2.0;
-/// Depth of a thin slab: in thinner ones light grazes between the directions of all answers. Differences get the
-/// further factor of this over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
-const THIN: f64 = 1e-2;
 /// Depth of a thick slab: in thicker ones rounding adds up: of 1500 answers one deviated by twice the sum at a depth
 /// of 77.
 const THICK: f64 = 5.0;
@@ -204,7 +206,7 @@ const SLOW: [f64; 2] = [0.6, 4.0];
 /// Values of [`Resolution::gains`] where a forward peak is cut off. In slabs of g = 0.9 at 48 directions the
 /// differences to 30 and to 24 directions are at least 20 and 160 times the error.
 const PEAKED: [f64; 2] = [6.0, 40.0];
-/// Bisections of the depth at which half of the directions give the answer of all of them.
+/// Bisections of the depth at which fewer directions give the answer of all of them.
 const BISECTIONS: u32 = 24;
 /// Maximum error of an optical depth, relative to a share, for which a bound that holds for all slabs is good enough.
 const OF_DEPTH: f64 = 1e-9;
@@ -218,89 +220,106 @@ pub fn solve(
     slices: &[Kernel],
     resolution: Resolution,
 ) -> Option<Vec<Answer>> {
-    let known = resolved(phase, lights, slices, resolution)?;
-    let answer = |i| Answer::each(|of: fn(&Energy) -> &f64| known(i, 1.0, &|energy| *of(energy)));
-    Some((0..lights.len()).map(answer).collect())
+    cache::STACKS.get(cache::of_stack(phase, lights, slices, resolution), || {
+        let known = resolved(phase, lights, slices, resolution)?;
+        let answer = |(i, &light): (usize, &Light)| {
+            let amplified = [1.0, thin::grazing(phase, light, slices)];
+            Answer::each(|of: fn(&Energy) -> &f64| known(i, amplified, &|energy| *of(energy)))
+        };
+        Some(lights.iter().enumerate().map(answer).collect())
+    })
 }
 
-/// Factorial moments `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the number of collisions of each light, given layers in which every collision has a mark and scores 1. Doubles have the first only, the others are
-/// infinite. `None` where a moment is infinite.
+/// Factorial moments `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the number of collisions of each light, given layers in
+/// which every collision has a mark and scores 1. Doubles have the first only, the others are infinite. `None` where
+/// a moment is infinite.
 pub fn factorial_moments<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
     slices: &[Kernel<S>],
+    resolution: Resolution,
 ) -> Option<Vec<[Known; 4]>> {
-    let known = resolved(phase, lights, slices, Resolution::COARSE)?;
-    let of_light = |i: usize| {
-        let mut factorial = 1.0;
-        std::array::from_fn(|k| {
-            factorial *= (k + 1) as f64;
-            if k >= S::TERMS {
-                return Known::INFINITE;
-            }
-            // Next to criticality a relative error x of the mean is one of (2k + 1)x.
-            known(i, (2 * k + 1) as f64, &|shares| shares.score.term(k)) * factorial
-        })
-    };
-    Some((0..lights.len()).map(of_light).collect())
+    cache::COUNTS.get(cache::of_stack(phase, lights, slices, resolution), || {
+        let known = resolved(phase, lights, slices, resolution)?;
+        let of_light = |i: usize| {
+            factorial::<S>(|k| {
+                // Next to criticality a relative error x of the mean is one of (2k + 1)x.
+                let amplified = [(2 * k + 1) as f64, f64::INFINITY];
+                known(i, amplified, &|shares| shares.score.term(k))
+            })
+        };
+        Some((0..lights.len()).map(of_light).collect())
+    })
+}
+
+/// Factorial moments from the coefficients of a score.
+fn factorial<S: Scalar>(coefficient: impl Fn(usize) -> Known) -> [Known; 4] {
+    let mut factorial = 1.0;
+    std::array::from_fn(|k| {
+        factorial *= (k + 1) as f64;
+        if k < S::TERMS { coefficient(k) * factorial } else { Known::INFINITE }
+    })
 }
 
 /// A number that is made of the shares of a light.
 type Functional<'f, S> = dyn Fn(&Shares<S>) -> f64 + 'f;
 
 /// Solves a stack of layers at four resolutions and returns a function. From the shares of a light it makes a number
-/// and its error, in which that of the first layer is multiplied by a factor.
+/// and its error, in which that of the first layer is multiplied by a factor. In a thin slab the error of the
+/// directions exceeds their difference by no more than a bound on what grazes.
 fn resolved<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
     slices: &[Kernel<S>],
     resolution: Resolution,
-) -> Option<impl Fn(usize, f64, &Functional<'_, S>) -> Known> {
+) -> Option<impl Fn(usize, [f64; 2], &Functional<'_, S>) -> Known> {
     let resolution = resolution.of(phase);
     let at = |resolution| energies_at(phase, lights, slices, resolution);
     let fine = at(resolution)?;
-    let coarse = at(resolution.coarser())?;
-    let coarsest = at(resolution.coarsest())?;
-    // With few directions the series may diverge by mistake.
-    let half = at(resolution.half());
-    let thicker = match half {
-        Some(_) => None,
-        None => Some(thicker(phase, lights, slices, resolution, &fine)),
-    };
+    let [of_coarsest, of_half] = resolution.gains;
+    // Each coarser answer, and the factor of its difference. With fewer directions the series may diverge by mistake.
+    let others = [
+        (resolution.coarser(), SAFETY),
+        (resolution.coarsest(), 1.0 / of_coarsest),
+        (resolution.half(), 1.0 / of_half),
+    ]
+    .map(|(other, factor)| match at(other) {
+        Some(found) => Some((found, factor)),
+        None => thicker(phase, lights, slices, [resolution, other], factor, &fine)
+            .map(|found| (found, 1.0)),
+    });
     let depth: f64 = slices.iter().map(|slice| slice.rate * slice.lost().leading()).sum();
     let thick = (depth / THICK).max(1.0);
-    let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
-    Some(move |i: usize, amplified: f64, of: &Functional<'_, S>| {
+    let thin = thin::factor(depth);
+    Some(move |i: usize, [amplified, grazing]: [f64; 2], of: &Functional<'_, S>| {
         // Known errors are added: of the first layer, of rounding, and of doubles that have fewer digits.
-        let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(of);
-        let [of_coarsest, of_half] = resolution.gains;
-        let of_half = match (&half, &thicker) {
-            (Some(half), _) => (fine - of(&half[i])).abs() / of_half,
-            (None, Some(Some(thicker))) => (fine - of(&thicker[i])).abs(),
-            _ => f64::INFINITY,
+        let fine = of(&fine[i]);
+        let difference = |other: &Option<(Vec<Shares<S>>, f64)>| match other {
+            Some((found, factor)) => factor * (fine - of(&found[i])).abs(),
+            None => f64::INFINITY,
         };
-        let differences = (SAFETY * (fine - coarse).abs())
-            .max((fine - coarsest).abs() / of_coarsest)
-            .max(of_half);
+        let differences = others.iter().map(difference).fold(0.0, f64::max);
         let known = amplified * thick * (resolution.first_layer + ROUNDING) * fine.abs();
-        Known::estimated(fine, thin * differences + known + f64::MIN_POSITIVE)
+        let of_directions = (thin * differences).min(differences + grazing);
+        Known::estimated(fine, of_directions + known + f64::MIN_POSITIVE)
     })
 }
 
 /// Shares of a slab that is thicker by the error of its critical depth; `None` where they are infinite.
 ///
-/// For slabs in which the series diverges with half of the directions only. Next to a critical depth the error of an
-/// answer is that of the depth:
+/// For slabs in which the series diverges with fewer directions only, at the second of two resolutions. Next to a
+/// critical depth the error of an answer is that of the depth:
 ///
 /// ```text
-/// 1 − δ       depth, relative to the slab's, at which half of the directions give the reflectance `fine`
-/// 1 + δ/gain  depth of the slab that is solved, relative to the slab's
+/// 1 − δ        depth, relative to the slab's, at which fewer directions give the reflectance `fine`
+/// 1 + factor δ  depth of the slab that is solved, relative to the slab's
 /// ```
 fn thicker<S: Scalar>(
     phase: &Phase,
     lights: &[Light],
     slices: &[Kernel<S>],
-    resolution: Resolution,
+    [resolution, other]: [Resolution; 2],
+    factor: f64,
     fine: &[Shares<S>],
 ) -> Option<Vec<Shares<S>>> {
     let at = |resolution, depth: f64| {
@@ -308,9 +327,8 @@ fn thicker<S: Scalar>(
             slices.iter().map(|slice| Kernel { rate: depth * slice.rate, ..*slice }).collect();
         energies_at(phase, lights, &slices, resolution)
     };
-    let half = resolution.half();
     let is_below = |depth: f64| {
-        let found = at(half, depth);
+        let found = at(other, depth);
         let reflected = |shares: &Shares<S>| shares.reflected.leading();
         found.is_some_and(|found| found.iter().zip(fine).all(|(x, y)| reflected(x) <= reflected(y)))
     };
@@ -322,7 +340,19 @@ fn thicker<S: Scalar>(
         let middle = 0.5 * (low + high);
         if is_below(middle) { low = middle } else { high = middle }
     }
-    at(resolution, 1.0 + (1.0 - low) / resolution.gains[1])
+    at(resolution, 1.0 + factor * (1.0 - low))
+}
+
+/// Factorial moments at one resolution, see [`factorial_moments`]; their errors are those of rounding.
+fn counts<S: Scalar>(
+    phase: &Phase,
+    lights: &[Light],
+    slices: &[Kernel<S>],
+    resolution: Resolution,
+) -> Option<Vec<[Known; 4]>> {
+    let found = energies_at(phase, lights, slices, resolution.of(phase))?;
+    let of = |shares: &Shares<S>| factorial::<S>(|k| Known::exact(shares.score.term(k)));
+    Some(found.iter().map(of).collect())
 }
 
 /// Shares at one resolution, without error bounds.
@@ -419,6 +449,9 @@ fn stack<S: Scalar>(directions: &Directions, slices: &[Kernel<S>], error: f64) -
 /// Reflectance and transmittance of a slab of optical depth τ and albedo a; the score is the expected
 /// number of collisions. `None` where they are infinite, which takes an albedo above 1.
 pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Option<Vec<Answer>> {
+    if albedo == 0.0 {
+        return Some(lights.iter().map(|&light| thin::black(light, depth)).collect());
+    }
     let slice = Kernel { rate: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
     let answers = solve(phase, lights, &[slice], Resolution::FINE)?;
     let resolution = Resolution { first_layer: 1e-6, ..Resolution::FINE };
@@ -435,8 +468,9 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
         // Below the slab that is the light that leaves there; half of the directions give it within a factor of 2.
         let below = colliding.as_ref().map_or(steepest, |found| 2.0 * found[i].1);
         let with = |known: Known, slope| known.blurred(slope * depth.error);
-        let [reflected, transmitted] =
-            [answer.reflected, answer.transmitted].map(|known| with(known, steepest.min(below)));
+        let shares = thin::by_orders(phase, *light, depth.value, albedo)
+            .unwrap_or([answer.reflected, answer.transmitted]);
+        let [reflected, transmitted] = shares.map(|known| with(known, steepest.min(below)));
         Answer { reflected, transmitted, score: with(answer.score, steepest) }
     };
     Some(answers.into_iter().zip(lights).enumerate().map(blurred).collect())

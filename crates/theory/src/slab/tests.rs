@@ -1,14 +1,19 @@
 //! Answers and their errors where they are hardest: next to criticality, with peaked phase functions, in thick slabs.
 
 use super::*;
-use crate::ParticleRule;
 use crate::problems::slab::Incidence;
+use crate::{Mesh, ParticleRule};
+use media::exponential::Exponential;
 use media::phase::henyey_greenstein::HenyeyGreenstein;
 use media::phase::isotropic::Isotropic;
+use media::{Medium, Piecewise};
+use numeric::Span;
+use numeric::quadrature::GaussLegendre;
+use std::sync::Arc;
 
 const LIGHTS: [Light; 3] = [Light::Collimated(1.0), Light::Collimated(0.3), Light::Diffuse];
 
-fn peaked(g: f64) -> Phase {
+pub(super) fn peaked(g: f64) -> Phase {
     Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"))
 }
 
@@ -17,12 +22,12 @@ fn slab(depth: f64, albedo: f64) -> [Kernel; 1] {
 }
 
 /// Adding and doubling with three times the directions is the other method. It confirms the stated error also where the
-/// series diverges with half of the directions.
+/// series diverges with fewer directions.
 #[test]
 fn next_to_criticality_the_error_covers_what_directions_are_missing() {
     let phase = Phase::Isotropic(Isotropic);
     let precise = Resolution { directions: 48, first_layer: 1e-12, ..Resolution::FINE };
-    let mut without_half = 0;
+    let mut without = [0; 3];
     for depth in [0.1, 1.0, 4.0] {
         let at =
             |albedo: f64, resolution| energies(&phase, &LIGHTS, &slab(depth, albedo), resolution);
@@ -33,22 +38,25 @@ fn next_to_criticality_the_error_covers_what_directions_are_missing() {
         }
         for exponent in 1..=24 {
             let albedo = low * (1.0 - 0.5f64.powi(exponent));
-            let Some(found) = solve(&phase, &LIGHTS, &slab(depth, albedo), Resolution::COARSE)
-            else {
-                continue;
-            };
-            without_half += u32::from(at(albedo, Resolution::COARSE.half()).is_none());
+            let found = solve(&phase, &LIGHTS, &slab(depth, albedo), Resolution::COARSE);
+            // The albedo is below the critical one of all directions.
+            let context = format!("{depth}, 1 - 2^-{exponent}");
+            let Some(found) = found else { panic!("{context}: not infinite") };
+            let few = [Resolution::coarser, Resolution::coarsest, Resolution::half];
+            for (count, few) in without.iter_mut().zip(few) {
+                *count += u32::from(at(albedo, few(Resolution::COARSE)).is_none());
+            }
             let exact = at(albedo, precise);
             for (i, answer) in found.iter().enumerate() {
                 let exact = exact.as_ref().map_or(f64::INFINITY, |exact| exact[i].reflected);
                 let Known { value, error, .. } = answer.reflected;
-                let context = format!("{depth}, 1 - 2^-{exponent}: {value} ± {error}, {exact}");
+                let context = format!("{context}: {value} ± {error}, {exact}");
                 assert!((value - exact).abs() <= error, "{context}");
                 assert!(exponent > 6 || error < 0.1 * value, "{context}");
             }
         }
     }
-    assert!(without_half > 0);
+    assert!(without[1..].iter().all(|&count| count > 0), "{without:?}");
 }
 
 /// All directions resolve g = 0.9, and confirm the error with 48 directions and the peak cut off.
@@ -176,4 +184,95 @@ fn the_variance_of_shares_of_thick_slabs_is_at_most_that_of_a_coin() {
         }
     }
     assert!(resolved > 60, "{resolved}");
+}
+
+/// An exponential medium under a constant σ̂, cut into layers.
+fn exponential(lights: &[Light], sampling: f64) -> (Mesh, Pieces) {
+    let span = Span::new(0.0, 1.0);
+    let mesh = Mesh::new(Medium::new(Arc::new(Exponential::new(10.0, 2.0)), span, span));
+    let flown = Piecewise::constant(sampling, span);
+    let pieces = Pieces::new(&mesh, &flown, &ParticleRule::Adaptive.kinks(1.0), lights);
+    assert!(matches!(pieces, Pieces::Graded(_)));
+    (mesh, pieces)
+}
+
+/// By every rule draws are 0 or 1 where a white medium has σ̂ ≥ σ_t: V = T(1 − T).
+#[test]
+fn draws_of_0_and_1_are_seen_by_their_weights() {
+    let of = |rule, light, albedo, ratio, depth, pieces: Pieces| {
+        let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
+        let truth = answers(&incidence.phase, &[light], Known::exact(depth), albedo);
+        let truth = truth.expect("finite")[0];
+        let walk =
+            Walk { incidence, albedo, rule, pieces, largest_ratio: ratio, depth, laws: true };
+        (truth, walk.predict(&truth))
+    };
+    for light in [Light::Collimated(0.5), Light::Diffuse] {
+        for rule in ParticleRule::ALL {
+            let constant = Pieces::Exact(vec![Piece::of(28.0, 1.0 / 1.4)]);
+            let (mesh, graded) = exponential(&[light], 14.0);
+            let depth = mesh.optical_depth().value;
+            for (depth, ratio, pieces) in
+                [(20.0, 1.0 / 1.4, constant), (depth, 10.0 / 14.0, graded)]
+            {
+                let (truth, found) = of(rule, light, 1.0, ratio, depth, pieces);
+                for (truth, channel) in
+                    [truth.reflected, truth.transmitted].iter().zip(&found.channels)
+                {
+                    let moments = channel.resolved_moments().expect("known");
+                    let coin = truth.value * (1.0 - truth.value);
+                    let off = (moments.variance() / coin - 1.0).abs();
+                    let error = channel.moments_error().expect("known");
+                    assert!(
+                        off <= error && error < 1e-7,
+                        "{rule:?}, {light:?}: {off:e}, {error:e}"
+                    );
+                }
+            }
+            // With absorption the weights of three rules are below 1.
+            let pieces = Pieces::Exact(vec![Piece::of(1.4, 1.0 / 1.4)]);
+            let (truth, found) = of(rule, light, 0.6, 1.0 / 1.4, 1.0, pieces);
+            let variance = found.channels[0].moments.expect("known").variance();
+            let coin = truth.reflected.value * (1.0 - truth.reflected.value);
+            let is_coin = matches!(rule, ParticleRule::Analog | ParticleRule::Terminating);
+            assert_eq!((variance / coin - 1.0).abs() < 1e-7, is_coin, "{rule:?}, {light:?}");
+        }
+    }
+}
+
+/// A walk without end looks up the mean chord times the mean σ̂ under light on both sides, and without scattering lookups
+/// are those of a line: `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k − 1} ds`, K and A the integrals of σ_t/μ and (σ̂ − σ_t)/μ.
+#[test]
+fn lookups_are_known_where_the_ratio_varies() {
+    let light = Light::Diffuse;
+    let sampling = 12.0;
+    let (mesh, pieces) = exponential(&[light], sampling);
+    let depth = mesh.optical_depth().value;
+    let (rule, laws) = (ParticleRule::NonTerminating, true);
+    let walk = |light, rule, albedo, pieces| {
+        let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
+        Walk { incidence, albedo, rule, pieces, largest_ratio: 10.0 / 12.0, depth, laws }
+    };
+    let Pieces::Graded(cuts) = pieces.clone() else { panic!("varies") };
+    let reversed = Pieces::Graded(cuts.map(|cut| cut.into_iter().rev().collect()));
+    let mean = |pieces| walk(light, rule, 0.8, pieces).lookups(&[light]).expect("known")[0][0];
+    let both = mean(pieces) + mean(reversed);
+    assert!((both.value - 4.0 * sampling).abs() <= both.error, "{both:?}");
+    assert!(both.error < 2e-3 * both.value, "{both:?}");
+    let cosine = 0.5;
+    let light = Light::Collimated(cosine);
+    let pieces = exponential(&[light], sampling).1;
+    let found = walk(light, ParticleRule::Analog, 0.0, pieces).lookups(&[light]).expect("known")[0];
+    let rule = GaussLegendre::new(96);
+    let exact = [1, 2, 3, 4].map(|k| {
+        rule.integrate(0.0, 1.0, |t| {
+            let lost = 5.0 * (1.0 - (-2.0 * t).exp()) / cosine;
+            let survived = sampling * t / cosine - lost;
+            f64::from(k) * sampling / cosine * (-lost).exp() * survived.powi(k - 1)
+        })
+    });
+    for (found, exact) in found.iter().zip(exact) {
+        assert!((found.value - exact).abs() <= found.error, "{found:?}, {exact}");
+        assert!(found.error < 0.02 * found.value, "{found:?}, {exact}");
+    }
 }

@@ -14,13 +14,13 @@
 //! ```
 //!
 //! The number M of collisions has the factorial moments that are the scores of a slab of `zQ_0` and `zS_0` over power
-//! series in y, with `z = 1 + y`, see [`super::layer`].
+//! series in y, with `z = 1 + y`, see [`super::layer`]. Where r varies they are extrapolated like other moments.
 //!
 //! Source: Szirmay-Kalos et al. 2017, sections 3.1–3.3; that moments are slabs again, the covariance and
 //! the cost are derived here.
 
 use super::pieces::{Piece, Pieces};
-use super::{Answer, Energy, Light, Resolution, energies, factorial_moments, solve};
+use super::{Answer, Energy, Light, Resolution, counts, energies, factorial_moments, solve};
 use crate::collisions::particle::EventProbabilities;
 use crate::prediction::raw::{POWERS, RawMoments};
 use crate::prediction::{Covariance, UNRESOLVED};
@@ -33,6 +33,12 @@ pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
 
 /// Relative distance to a critical depth within which theory does not resolve on which side of it a slab is.
 const NEAR: f64 = 1e-3;
+
+/// Maximum number of directions of lookups where r varies: series in a hundred layers of more take many seconds.
+const MAX_DIRECTIONS: usize = 24;
+
+/// Rounding of `1 − r`, and of a factor of the weight.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Existence of moments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,10 +113,48 @@ impl Walk {
         self.rule.probabilities(ratio, self.albedo)
     }
 
-    /// Returns true if null collisions keep the weight.
+    /// The layers; where r varies, those of the finer cut.
+    fn finest(&self) -> &[Piece] {
+        match &self.pieces {
+            Pieces::Exact(pieces) | Pieces::Graded([_, pieces]) => pieces,
+        }
+    }
+
+    /// All ratios of the layers.
+    fn ratios(&self) -> impl Iterator<Item = f64> {
+        self.finest().iter().flat_map(|piece| piece.ratios.iter().map(|&[_, ratio]| ratio))
+    }
+
+    /// Factor of the weight at every scattering, if null collisions keep the weight; `None` where they change it, or
+    /// where the factor depends on r. An event that does not happen has no factor.
+    fn scattering_factor(&self) -> Option<f64> {
+        if self.largest_ratio > 1.0 + ROUNDING {
+            return None;
+        }
+        let is_near = |x: f64, y: f64| (x - y).abs() <= ROUNDING;
+        let mut factor = None;
+        for ratio in self.ratios() {
+            let event = self.probabilities(ratio);
+            if event.transmit > ROUNDING && !is_near(event.transmit_weight, 1.0) {
+                return None;
+            }
+            if event.scatter > 0.0
+                && !is_near(*factor.get_or_insert(event.scatter_weight), event.scatter_weight)
+            {
+                return None;
+            }
+        }
+        Some(factor.unwrap_or(1.0))
+    }
+
+    /// Returns true if null collisions keep the weight, and scatterings multiply it by one factor.
     fn is_tracking(&self) -> bool {
-        use ParticleRule::{Analog, Terminating, Weighted};
-        matches!(self.rule, Analog | Terminating | Weighted) && self.largest_ratio <= 1.0
+        self.scattering_factor().is_some()
+    }
+
+    /// Returns true if draws are 0 or 1, since every collision keeps the weight or ends the walk.
+    fn is_bernoulli(&self) -> bool {
+        self.scattering_factor().is_some_and(|factor| (factor - 1.0).abs() <= ROUNDING)
     }
 
     /// Existence of the second moments: where they are infinite, no number of draws converges.
@@ -120,11 +164,7 @@ impl Walk {
             let probabilities = self.probabilities(ratio);
             probabilities.transmit_weight.abs() > 1.0 || probabilities.scatter_weight.abs() > 1.0
         };
-        let pieces = match &self.pieces {
-            Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
-        };
-        let may_grow = pieces.iter().flat_map(|piece| &piece.ratios).any(|&[_, r]| grows(r));
-        if !may_grow || self.powers(2, &[self.incidence.light]).is_some() {
+        if !self.ratios().any(grows) || self.powers(2, &[self.incidence.light]).is_some() {
             return Existence::Finite;
         }
         let moments = self.of_collisions(2);
@@ -202,9 +242,7 @@ impl Walk {
         if k > 4 && !self.has_tails() {
             return infinite();
         }
-        // Draws of an analog walk are 0 or 1.
-        let is_bernoulli = self.is_tracking() && self.probabilities(1.0).scatter_weight == 1.0;
-        if k == 1 || is_bernoulli {
+        if k == 1 || self.is_bernoulli() {
             return truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect();
         }
         let found = self.powers(k, lights).unwrap_or_else(infinite);
@@ -220,16 +258,13 @@ impl Walk {
 
     /// Returns true if draws lie in [0, 1], as all weights do.
     fn is_share(&self) -> bool {
-        let is_share = |&[_, ratio]: &[f64; 2]| {
+        let is_share = |ratio| {
             let probabilities = self.probabilities(ratio);
             [probabilities.transmit_weight, probabilities.scatter_weight]
                 .iter()
                 .all(|w| (0.0..=1.0).contains(w))
         };
-        let pieces = match &self.pieces {
-            Pieces::Exact(pieces) | Pieces::Graded([_, pieces]) => pieces,
-        };
-        pieces.iter().flat_map(|piece| &piece.ratios).all(is_share)
+        self.ratios().all(is_share)
     }
 
     /// Prediction from the raw moments of both channels.
@@ -256,19 +291,42 @@ impl Walk {
     }
 
     /// Factorial moments of the number of collisions in each light, see [`factorial_moments`], the first only without
-    /// `laws`; `None` where they are not known.
+    /// `laws`; `None` where they are not known. Where r varies they are known with few directions only.
     pub fn lookups(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
+        let is_quick = match self.pieces {
+            Pieces::Exact(_) => true,
+            Pieces::Graded(_) => Resolution::LAYERED.count(&self.incidence.phase) <= MAX_DIRECTIONS,
+        };
+        if !is_quick {
+            return None;
+        }
+        if self.laws { self.counts::<Jet<4>>(lights) } else { self.counts::<f64>(lights) }
+    }
+
+    /// Factorial moments as the terms of series, as many as a scalar has.
+    fn counts<S: Scalar>(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
         let phase = &self.incidence.phase;
-        if self.laws {
-            factorial_moments(phase, lights, &self.marked::<Jet<4>>()?)
-        } else {
-            factorial_moments(phase, lights, &self.marked::<f64>()?)
+        match &self.pieces {
+            Pieces::Exact(pieces) => {
+                factorial_moments(phase, lights, &self.marked::<S>(pieces)?, Resolution::COARSE)
+            }
+            Pieces::Graded(cuts) => {
+                let [coarse, fine] = cuts.each_ref().map(|cut| self.marked::<S>(cut));
+                let coarse = factorial_moments(phase, lights, &coarse?, Resolution::LAYERED)?;
+                let fine = counts(phase, lights, &fine?, Resolution::LAYERED)?;
+                let each = |(coarse, fine): ([Known; 4], [Known; 4])| {
+                    std::array::from_fn(|k| match k < S::TERMS {
+                        true => extrapolated(coarse[k], fine[k].value),
+                        false => Known::INFINITE,
+                    })
+                };
+                Some(coarse.into_iter().zip(fine).map(each).collect())
+            }
         }
     }
 
     /// Layers with a mark and a score of 1 at every collision; `None` where the distribution of their number is not known.
-    fn marked<S: Scalar>(&self) -> Option<Vec<Kernel<S>>> {
-        let Pieces::Exact(pieces) = &self.pieces else { return None };
+    fn marked<S: Scalar>(&self, pieces: &[Piece]) -> Option<Vec<Kernel<S>>> {
         // A layer of null collisions only has infinitely many of them along it.
         let probabilities = |ratio: f64| self.probabilities(ratio);
         let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(probabilities));

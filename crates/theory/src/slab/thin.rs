@@ -1,0 +1,181 @@
+//! Slabs so thin that the directions of adding and doubling do not resolve grazing light.
+//!
+//! ```text
+//! isotropic scattering   R = Σ_r a^r R_r,  T = Σ_r a^r T_r   by orders of scattering
+//! any other              R = S c (β ± q),  c the collided light, β the share of it that is scattered back,
+//!                        q ≤ p̂ τ (1 + ln 1/τ) the share that collides again, p̂ = 4π times the largest p
+//! ```
+//!
+//! Light at the cosine μ collides again with a probability of at most `min(1, τ/μ)`, the integral of which over μ is
+//! `τ (1 + ln 1/τ)`. Both the exact answer and that of few directions lie within these bounds.
+//!
+//! Source: derived.
+
+use std::f64::consts::PI;
+
+use super::{Answer, Light, orders};
+use crate::Kernel;
+use media::phase::Phase;
+use media::phase::isotropic::Isotropic;
+use numeric::{Known, Scalar, exponential_integrals};
+
+/// Depth of a thin slab: in thinner ones light grazes between the directions of all answers. Differences get the
+/// further factor of this over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
+pub const THIN: f64 = 1e-2;
+/// Maximum bound on the share of scattered light that collides again, for which it is used.
+const FEW: f64 = 0.1;
+/// Relative error of the light that is scattered in all orders, beyond that which their sum shows.
+const OF_ORDERS: f64 = 2e-12;
+/// Relative rounding error of exponential integrals.
+const OF_INTEGRALS: f64 = 4e-15;
+
+/// Factor of differences between resolutions in a slab of an optical depth.
+pub fn factor(depth: f64) -> f64 {
+    if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 }
+}
+
+/// Bound on the difference of the shares of two resolutions beyond that of the light that is scattered once; infinite
+/// where light is scattered more than once by a thick slab.
+pub fn grazing<S: Scalar>(phase: &Phase, light: Light, slices: &[Kernel<S>]) -> f64 {
+    let sum = |of: &dyn Fn(&Kernel<S>) -> f64| -> f64 {
+        slices.iter().map(|slice| slice.rate * of(slice)).sum()
+    };
+    let scattered = sum(&|slice| slice.scattered.leading().abs());
+    let depth = scattered.max(sum(&|slice| slice.lost().leading().abs()));
+    // Every phase function is largest straight on or straight back.
+    let largest = [-1.0, 1.0].map(|cosine| phase.value(cosine)).into_iter().fold(0.0, f64::max);
+    let again = 4.0 * PI * largest * depth * (1.0 - depth.min(1.0).ln());
+    // Both answers, and what collides a third time.
+    let collided = scattered * light.cosine().map_or(2.0, f64::recip);
+    if again <= FEW { 3.0 * collided * again } else { f64::INFINITY }
+}
+
+/// Share of light that collides in a slab, without cancellation.
+fn collided(light: Light, depth: f64) -> f64 {
+    match light {
+        Light::Collimated(cosine) => -(-depth / cosine).exp_m1(),
+        // 1 − 2E₃.
+        Light::Diffuse => -(-depth).exp_m1() + depth * exponential_integrals(depth)[1],
+    }
+}
+
+/// Shares of isotropic scattering in a thin slab of an albedo up to 1, from orders of scattering; `None` elsewhere.
+pub fn by_orders(phase: &Phase, light: Light, depth: f64, albedo: f64) -> Option<[Known; 2]> {
+    if *phase != Phase::Isotropic(Isotropic) || depth >= THIN || albedo > 1.0 {
+        return None;
+    }
+    let orders = orders::orders(light, depth)?;
+    // Everything that collides leaves at last, if nothing is absorbed.
+    let (found, all) = (orders[1..].iter().flatten().sum::<f64>(), collided(light, depth));
+    let error = OF_ORDERS + (found / all - 1.0).abs();
+    let scattered =
+        |end: usize| orders[1..].iter().rev().fold(0.0, |sum, order| albedo * (sum + order[end]));
+    Some([0, 1].map(|end| {
+        let (scattered, straight) = (scattered(end), orders[0][end]);
+        let error = error * scattered + 2.0 * f64::EPSILON * straight;
+        Known::estimated(straight + scattered, error)
+    }))
+}
+
+/// Shares of a slab that scatters nothing, in closed form.
+///
+/// ```text
+/// T = e^{−τ/μ₀}, or 2E₃(τ) = e^{−τ} − τE₂(τ) of diffuse light;  dT/dτ = −2E₂
+/// ```
+pub fn black(light: Light, depth: Known) -> Answer {
+    let transmitted = match light {
+        Light::Collimated(cosine) => (depth * cosine.recip()).exp_neg(),
+        Light::Diffuse => {
+            let Known { value: depth, error, grade } = depth;
+            let [_, second] = exponential_integrals(depth);
+            let value = (-depth).exp() - depth * second;
+            // Both integrals are differences of numbers that are τ times as large.
+            let rounding = OF_INTEGRALS * (1.0 + depth).powi(2) * value;
+            Known { value, error: 2.0 * second * error + rounding, grade }
+        }
+    };
+    let score = Known { value: collided(light, depth.value), ..transmitted };
+    Answer { reflected: Known::new(0.0, 0.0), transmitted, score: score.blurred(f64::EPSILON) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::peaked;
+    use super::super::{Resolution, answers, solve};
+    use super::*;
+    use numeric::Span;
+    use numeric::quadrature::GaussLegendre;
+
+    const LIGHTS: [Light; 3] = [Light::Collimated(1.0), Light::Collimated(0.2), Light::Diffuse];
+
+    /// In the limit a slab reflects `a c β` and lets all else pass, with c = τ/μ₀ or 2τ.
+    #[test]
+    fn the_thinnest_slabs_scatter_once() {
+        for phase in [Phase::Isotropic(Isotropic), peaked(0.9), peaked(-0.6)] {
+            for albedo in [0.9, 1.0] {
+                for depth in [1e-12, 1e-20, 1e-60] {
+                    let found = answers(&phase, &LIGHTS, Known::exact(depth), albedo);
+                    for (light, found) in LIGHTS.iter().zip(found.expect("finite")) {
+                        let back = found.reflected.value / (albedo * collided(*light, depth));
+                        let context = format!("{phase:?}, {albedo}, {depth:e}, {light:?}");
+                        let is_even = phase == Phase::Isotropic(Isotropic);
+                        assert!(!is_even || (back - 0.5).abs() < 1e-9, "{context}: {back}");
+                        assert!(back > 0.0 && back < 1.0, "{context}: {back}");
+                        for known in [found.reflected, found.transmitted] {
+                            assert!(known.error < 1e-4 * known.value, "{context}: {known:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Orders of scattering, adding and doubling at thicker slabs, and the bound on what grazes agree.
+    #[test]
+    fn thin_slabs_are_known_by_orders_of_scattering() {
+        let phase = Phase::Isotropic(Isotropic);
+        for depth in [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 9e-3] {
+            for albedo in [0.3, 0.9, 1.0] {
+                let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 1.0 };
+                let doubled = solve(&phase, &LIGHTS, &[slice], Resolution::FINE).expect("finite");
+                let found = answers(&phase, &LIGHTS, Known::exact(depth), albedo).expect("finite");
+                for (found, doubled) in found.iter().zip(doubled) {
+                    for (found, doubled) in [
+                        (found.reflected, doubled.reflected),
+                        (found.transmitted, doubled.transmitted),
+                    ] {
+                        let off = (found.value - doubled.value).abs();
+                        let context = format!("{depth:e}, {albedo}: {found:?}, {doubled:?}");
+                        assert!(off <= found.error + doubled.error, "{context}");
+                        assert!(found.error < 1e-6 * found.value, "{context}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Without scattering the phase function does not matter, however sharp it is.
+    #[test]
+    fn a_black_slab_is_known_in_closed_form() {
+        for depth in [0.0, 1e-9, 0.3, 20.0, 100.0] {
+            let found = answers(&peaked(-0.99), &LIGHTS, Known::exact(depth), 0.0).expect("finite");
+            for (light, found) in LIGHTS.iter().zip(found) {
+                let exact = match light {
+                    Light::Collimated(cosine) => (-depth / cosine).exp(),
+                    Light::Diffuse => GaussLegendre::new(64)
+                        .on(Span::new(0.0, 1.0))
+                        .map(|(x, weight)| 4.0 * weight * x.powi(3) * (-depth / (x * x)).exp())
+                        .sum(),
+                };
+                let Known { value, error, .. } = found.transmitted;
+                assert_eq!(found.reflected, Known::new(0.0, 0.0));
+                assert!(
+                    (value / exact - 1.0).abs() < 1e-9,
+                    "{light:?}, {depth}: {value:e} {exact:e}"
+                );
+                assert!(error < 1e-10 * value, "{light:?}, {depth}: {error:e}");
+                assert!((found.score.value + value - 1.0).abs() < 1e-15);
+            }
+        }
+    }
+}
