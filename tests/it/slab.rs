@@ -423,7 +423,6 @@ fn thin_slabs_are_answered() {
             let context = format!("τ = {depth}, a = {albedo}, {phase}: {}", row.reason);
             let [truth, error] = [row.truth, row.truth_error].map(|x| x.expect(&context));
             assert!(error < 1e-4 * truth, "{context}: {error:e}");
-            assert!(row.predicted_variance.is_some(), "{context}");
         }
     }
 }
