@@ -241,7 +241,7 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
 }
 
 /// A walk without end looks up the mean chord times the mean σ̂ under light on both sides, and without scattering lookups
-/// are those of a line: `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k − 1} ds`, K and A the integrals of σ_t/μ and (σ̂ − σ_t)/μ.
+/// are those of a line: `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k − 1} ds`, K and A the integrals of `σ_t/μ` and `(σ̂ − σ_t)/μ`.
 #[test]
 fn lookups_are_known_where_the_ratio_varies() {
     let light = Light::Diffuse;
