@@ -5,7 +5,7 @@
 //! ```
 //!
 //! It detects wrong free flights and wrong endings that the mean hides, and much sooner. If the number is constant in
-//! theory, every draw must have it.
+//! theory, every draw must have it. A mean that theory knows roughly is not compared, see [`CountDistribution::is_sharp`].
 
 use super::always::Always;
 use super::batch::Observe;
@@ -17,7 +17,8 @@ use theory::CountDistribution;
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(law) = &subject.prediction.lookups else { return Vec::new() };
+    let law = subject.prediction.lookups.as_ref().filter(|law| law.is_sharp());
+    let Some(law) = law else { return Vec::new() };
     let mean = law.mean;
     let what = "the number of lookups";
     let question = if law.variance > 0.0 {

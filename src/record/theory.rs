@@ -133,7 +133,7 @@ fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, looku
     if let Some(law) = law.filter(|law| law.variance > 0.0) {
         let deviation = (law.variance / n).sqrt();
         record.lookups_deviation = Some(deviation);
-        record.z_lookups = observed.map(|mean| mean / deviation);
+        record.z_lookups = observed.filter(|_| law.is_sharp()).map(|mean| mean / deviation);
     }
 }
 

@@ -277,7 +277,7 @@ fn majorants_are_never_exceeded() {
     }
 }
 
-/// Layers along a ray at the cosine 0.6 to their axis are the field along a line whose lengths are divided by it.
+/// Layers along a ray at the cosine 0.6 to their axis are the field along a line with lengths divided by 0.6.
 #[test]
 fn layers_have_the_predictions_of_a_line() {
     let pages = [

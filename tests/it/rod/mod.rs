@@ -327,7 +327,7 @@ fn a_rule_is_refused_where_it_has_no_chances() {
     assert!(refused.reason.contains("σ_t ≤ σ̂"), "{}", refused.reason);
 }
 
-/// Where E[X²] underflows it does not diverge, and an expected value has all its digits however small it is.
+/// A second moment that underflows is not taken for one that diverges, and small expected values keep their digits.
 #[test]
 fn faint_rods_say_what_theory_lacks() {
     let rod = "medium.constant.extinction = 900\nspan = [0, 1]\nalbedo = 0.5\nforward = 0.5

@@ -86,7 +86,7 @@ impl Walk {
     /// Distribution of the lookups of a draw by one of several walks, given the probability of each.
     pub fn mixed_lookups(walks: impl Iterator<Item = (f64, Self)>) -> Option<CountDistribution> {
         let of =
-            |(weight, walk): (f64, Self)| Some((weight, walk.counted(&[walk.incidence.light])?[0]));
+            |(weight, walk): (f64, Self)| Some((weight, walk.lookups(&[walk.incidence.light])?[0]));
         let each = walks.map(of).collect::<Option<Vec<_>>>()?;
         colours::mixed(each).map(CountDistribution::of_factorial)
     }
@@ -100,7 +100,7 @@ impl Walk {
     /// Predictions for several lights, with common computations.
     pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
-        let lookups = self.counted(lights);
+        let lookups = self.lookups(lights);
         let of = |(i, truth): (usize, &Answer)| {
             let law = lookups.as_ref().map(|lookups| CountDistribution::of_factorial(lookups[i]));
             let of_side = |side: usize| RawMoments(raw.each_ref().map(|all| all[i][side]));
@@ -301,13 +301,6 @@ impl Walk {
             return None;
         }
         if self.laws { self.counts::<Jet<4>>(lights) } else { self.counts::<f64>(lights) }
-    }
-
-    /// [`Self::lookups`], where they are known well enough for a comparison with draws.
-    fn counted(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
-        let is_exact = matches!(self.pieces, Pieces::Exact(_));
-        let is_sharp = |moments: &[Known; 4]| is_exact || super::is_sharp(moments[0]);
-        self.lookups(lights).filter(|found| found.iter().all(is_sharp))
     }
 
     /// Factorial moments as the terms of series, as many as a scalar has.
