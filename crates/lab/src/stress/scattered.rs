@@ -150,7 +150,7 @@ fn homogeneous(
         let row = if number < 3 { 3 } else { 0 };
         seen.at(format_args!("{technique:?}"));
         // A spread that rounding hides is not told.
-        seen.moments([row, row + 1], found.channels[0].moments, &raw);
+        seen.resolved([row, row + 1], found.channels[0].moments, &raw);
         match found.lookups.zip(exact) {
             Some((law, exact)) => seen.stated(row + 2, lookups(&law), exact),
             None => seen.skip(row + 2),
@@ -182,6 +182,6 @@ fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
     let (raw, _) = varying(&estimator).exact(technique);
     seen.at(format_args!("{technique:?}, {tracking:?}"));
     let found = estimator.found(technique).prediction().channels[0].moments;
-    seen.moments([0, 1], found, &raw);
+    seen.resolved([0, 1], found, &raw);
     Some(())
 }

@@ -101,6 +101,16 @@ impl RawMoments {
         Self(std::array::from_fn(half))
     }
 
+    /// Raw moments in units of powers of a mean that has the same resolution: the k-th has 1 + k times the error.
+    #[must_use]
+    pub fn in_units_of_their_mean(&self) -> Self {
+        let widened = |i: usize| {
+            let known = self.0[i];
+            Known { error: f64::from(1 + POWERS[i]) * known.error, ..known }
+        };
+        Self(std::array::from_fn(widened))
+    }
+
     /// Returns true if the draw is its mean with no rounding at all.
     pub fn is_certain(&self, mean: f64) -> bool {
         [1, 2, 3].into_iter().all(|i| self.0[i].value == mean.powi(POWERS[i]))

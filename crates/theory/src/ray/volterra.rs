@@ -62,8 +62,8 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let missed = (t * depth.value.exp() - 1.0).abs();
     let relative_error = fine.relative_error() + missed + 1e-14;
     let [m1, m2, m3, m4, .., m8] = raw;
-    let errors = POWERS.map(|k| f64::from(1 + k) * relative_error);
-    let raw = RawMoments::estimated([m1, m2, m3, m4, m8], errors);
+    let raw = RawMoments::estimated([m1, m2, m3, m4, m8], [relative_error; POWERS.len()]);
+    let raw = raw.in_units_of_their_mean();
     // Central moments by subtraction: these estimators are not used where the relative spread
     // vanishes, and the loss of digits is part of the error.
     let central = raw.central(Known::estimated(t, relative_error * t), WORST);

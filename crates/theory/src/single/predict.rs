@@ -166,7 +166,7 @@ impl TechniqueMoments {
     /// Prediction for the draws.
     pub fn prediction(&self) -> Prediction {
         let [mean, .., fourth, eighth] = self.raw.0;
-        let moments = self.raw.central(mean, BLURRED);
+        let moments = self.raw.in_units_of_their_mean().central(mean, BLURRED);
         // A variance may be resolved where the higher moments are not.
         let is_known = moments.error < BLURRED && mean.value.abs() < f64::INFINITY;
         let is_full = self.raw.0[..4].iter().all(|power| power.value.abs() >= LEAST);
