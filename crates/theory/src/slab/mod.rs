@@ -34,6 +34,7 @@ mod tests;
 mod thin;
 pub mod walk;
 
+use self::thin::Grazing;
 use crate::Kernel;
 use crate::problems::slab::Light;
 use media::phase::Phase;
@@ -223,8 +224,8 @@ pub fn solve(
     cache::STACKS.get(cache::of_stack(phase, lights, slices, resolution), || {
         let known = resolved(phase, lights, slices, resolution)?;
         let answer = |(i, &light): (usize, &Light)| {
-            let amplified = [1.0, thin::grazing(phase, light, slices)];
-            Answer::each(|of: fn(&Energy) -> &f64| known(i, amplified, &|energy| *of(energy)))
+            let grazing = thin::grazing(phase, light, slices);
+            Answer::each(|of: fn(&Energy) -> &f64| known(i, 1.0, grazing, &|energy| *of(energy)))
         };
         Some(lights.iter().enumerate().map(answer).collect())
     })
@@ -244,8 +245,8 @@ pub fn factorial_moments<S: Scalar>(
         let of_light = |i: usize| {
             factorial::<S>(|k| {
                 // Next to criticality a relative error x of the mean is one of (2k + 1)x.
-                let amplified = [(2 * k + 1) as f64, f64::INFINITY];
-                known(i, amplified, &|shares| shares.score.term(k))
+                let amplified = (2 * k + 1) as f64;
+                known(i, amplified, Grazing::UNKNOWN, &|shares| shares.score.term(k))
             })
         };
         Some((0..lights.len()).map(of_light).collect())
@@ -272,7 +273,7 @@ fn resolved<S: Scalar>(
     lights: &[Light],
     slices: &[Kernel<S>],
     resolution: Resolution,
-) -> Option<impl Fn(usize, [f64; 2], &Functional<'_, S>) -> Known> {
+) -> Option<impl Fn(usize, f64, Grazing, &Functional<'_, S>) -> Known> {
     let resolution = resolution.of(phase);
     let at = |resolution| energies_at(phase, lights, slices, resolution);
     let fine = at(resolution)?;
@@ -291,7 +292,7 @@ fn resolved<S: Scalar>(
     let depth: f64 = slices.iter().map(|slice| slice.rate * slice.lost().leading()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = thin::factor(depth);
-    Some(move |i: usize, [amplified, grazing]: [f64; 2], of: &Functional<'_, S>| {
+    Some(move |i: usize, amplified: f64, grazing: Grazing, of: &Functional<'_, S>| {
         // Known errors are added: of the first layer, of rounding, and of doubles that have fewer digits.
         let fine = of(&fine[i]);
         let difference = |other: &Option<(Vec<Shares<S>>, f64)>| match other {
@@ -300,7 +301,7 @@ fn resolved<S: Scalar>(
         };
         let differences = others.iter().map(difference).fold(0.0, f64::max);
         let known = amplified * thick * (resolution.first_layer + ROUNDING) * fine.abs();
-        let of_directions = (thin * differences).min(differences + grazing);
+        let of_directions = (thin * differences).min(differences + grazing.bound(fine));
         Known::estimated(fine, of_directions + known + f64::MIN_POSITIVE)
     })
 }
