@@ -274,7 +274,9 @@ mod tests {
                 assert!((found - exact).abs() < 1e-14, "{found} {exact}");
             }
         }
-        assert_eq!([3.0.power_of(-2.0), 0.5.power_of(9.0), 0.5.power_of(0.0)], [-8.0, 3.0, 0.0]);
+        assert_eq!([3.0.power_of(-2.0), 0.5.power_of(0.0)], [-8.0, 0.0]);
+        // `exp` and `ln` of the system: their last digit differs between machines.
+        assert!((0.5.power_of(9.0) - 3.0).abs() < 1e-15);
         assert_eq!(Jet([2.0, 0.0]).power_of(-3.0), Jet([9.0, 0.0]));
     }
 
