@@ -64,7 +64,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let Arguments { experiments, draws, rounds, threads, .. } = arguments;
     let cases = experiments.read(catalogue, console)?;
     let options = experiments.options(Amount::Exactly(*draws))?;
-    output::writable(&arguments.out)?;
+    output::can_write(&arguments.out)?;
     let baselines = arguments.open()?;
     // The plan may use all processors, whatever the number of timed threads.
     let plan = selection::on_threads(0, || experiments.plan(&cases, &options, console))?;

@@ -34,7 +34,7 @@ pub struct Stress {
 
 /// Runs the stress test, prints and writes the table, and returns 1 if any bound is broken.
 pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8> {
-    output::writable(&arguments.out.join("stress"))?;
+    output::can_write(&arguments.out.join("stress"))?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     // Single precision comes after the pages.
     let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
@@ -96,9 +96,7 @@ pub struct SelfTestArguments {
 
 /// Calibrates, draws all mutants, and prints the tables.
 pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> anyhow::Result<u8> {
-    if let Some(out) = &arguments.out {
-        output::writable(out)?;
-    }
+    arguments.out.iter().try_for_each(|out| output::can_write(out))?;
     let runs = if arguments.long { LONG } else { arguments.runs };
     let many = if arguments.long { LONG_STREAMS } else { arguments.streams };
     let begin = Instant::now();

@@ -247,7 +247,7 @@ pub fn progress_until(
     bar
 }
 
-/// Fails before the drawing, not after it, if a folder cannot be written to.
+/// Makes the folder of a run, which keeps draws in it from the first on; fails if it cannot be written to.
 pub fn writable(out: &Path) -> anyhow::Result<()> {
     let cure = || format!("cannot write into {}; give another folder with --out", out.display());
     std::fs::create_dir_all(out).with_context(cure)?;

@@ -35,7 +35,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let pictures = read(&arguments.pictures, catalogue.own_pages(), console)?;
     let out = arguments.out.join("gallery");
     // A folder that cannot be written to is reported before the rendering, not after it.
-    output::writable(&out)?;
+    output::can_write(&out)?;
     let rows = pictures.iter().map(|picture| 2 * picture.rows() as u64).sum();
     let bar = output::progress("rendering", "rows", rows, console);
     let mut records = Vec::new();

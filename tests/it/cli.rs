@@ -175,6 +175,32 @@ fn an_unwritable_folder_is_known_before_the_drawing() {
 }
 
 #[test]
+fn commands_that_do_not_finish_leave_no_folder() {
+    let rays = "title = \"a grid\"\n[problem.transmittance]\nvolume.grid = { random = { size = [8, 8, 8] }, bounds.box = \
+                { low = [0, 0, 0], high = [4, 4, 4] } }\nrays = { random = 1000 }\nestimators = [\"ratio\"]\nsampling = 1\n";
+    let place = Place::new(&[("case.toml", GOOD), ("rays.toml", rays)]);
+    for failing in ["bench case.toml --baseline none", "judge --images none.npy --truth 1"] {
+        assert_eq!(code(&place.run(&format!("{failing} --out found"))), 2, "{failing}");
+        assert!(!place.path().join("found").exists(), "{failing}");
+    }
+    for long in [
+        "advise rays.toml --cost lookup=1us",
+        "bench case.toml --draws 100000000",
+        "render",
+        "self-test --long",
+        "stress",
+    ] {
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("trueflight"));
+        let words = long.split(' ').chain(["--out", "found", "--quiet"]);
+        let mut run = command.args(words).current_dir(place.path()).spawn().expect("it starts");
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        run.kill().expect("it is still at work");
+        assert!(!run.wait().expect("it ends").success());
+        assert!(!place.path().join("found").exists(), "{long}");
+    }
+}
+
+#[test]
 fn results_are_written_where_they_are_wanted() {
     let place = Place::new(&[("case.toml", GOOD)]);
     let output = place.run("run case.toml --out here --draws 2000 --quiet");

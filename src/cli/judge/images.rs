@@ -75,9 +75,7 @@ const MISSING: &str = "what the pixels should be is not known; give --truth T fo
 pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u8> {
     let images = &arguments.images;
     arguments.check_junit("images")?;
-    if let Some(out) = &images.out {
-        output::writable(out)?;
-    }
+    images.out.iter().try_for_each(|out| output::can_write(out))?;
     if arguments.files.iter().any(|file| super::is_pipe(file)) {
         bail!("images are not read of a pipe; give files");
     }

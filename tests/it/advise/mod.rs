@@ -305,15 +305,3 @@ fn the_command_prints_tables_lines_and_files() {
     let wrong = place.run("advise waves.toml --cost lookup=1us --out waves.toml/below");
     assert_says(&crate::common::place::stderr(&wrong), &["cannot write into", "another folder"]);
 }
-
-#[test]
-fn an_interrupted_command_leaves_no_folder() {
-    let place = Place::new(&[("grid.toml", &format!("{GRID}rays = {{ random = 1000 }}\n{ANY}"))]);
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("trueflight"));
-    let words = ["advise", "grid.toml", "--cost", "lookup=1us", "--out", "found", "--quiet"];
-    let mut run = command.args(words).current_dir(place.path()).spawn().expect("it starts");
-    std::thread::sleep(std::time::Duration::from_millis(200));
-    run.kill().expect("it is still at work");
-    assert!(!run.wait().expect("it ends").success());
-    assert!(!place.path().join("found").exists(), "a folder of an interrupted command");
-}
