@@ -134,7 +134,15 @@ impl Table {
         let count = names.len();
         let place = match column {
             None if count > 1 => {
-                return Err(ForeignError::ManyColumns { file: file(), count, columns: listed() });
+                let (file, line) = (file(), brief(&names.join(",")));
+                let is_digits = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
+                return Err(if line.contains(';') {
+                    ForeignError::Separator { file, line, separator: "semicolons" }
+                } else if count == 2 && is_digits(&names[1]) && !is_name(names[0].as_bytes()) {
+                    ForeignError::DecimalComma { file, line }
+                } else {
+                    ForeignError::ManyColumns { file, count, columns: listed() }
+                });
             }
             None => 0,
             Some(&Column::Index(index)) if index < count => index,
@@ -363,7 +371,9 @@ mod tests {
     fn faults_are_named_with_their_place_and_a_cure() {
         for (text, column, said) in [
             ("T,X\n1,2\n", None, ": 2 columns (T, X); choose one by name or index"),
-            ("1,2\n", None, ": 2 columns (0, 1); choose"),
+            ("1,2.5\n", None, ": 2 columns (0, 1); choose"),
+            ("0,25\n", None, ": `0,25` is two columns, or a number with a decimal comma; write"),
+            ("0,5;1,5\n", None, ": `0,5;1,5` has semicolons between its columns; separate"),
             ("T,X\n1,2\n", Some("Y"), ": no column `Y` among T, X; choose"),
             ("1,2\n", Some("7"), ": no column 7, counted from 0, among 0, 1; choose"),
             ("T,T\n1,2\n", Some("T"), ": 2 columns are called `T`; choose"),

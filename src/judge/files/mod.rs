@@ -313,8 +313,15 @@ pub enum ForeignError {
     #[error("{file}: {count} columns are called `{name}`; choose one by index")]
     SameName { file: String, name: String, count: usize },
     /// Columns that something else than commas separates.
-    #[error("{file}: `{line}` has {separator} between its columns; separate columns by commas")]
+    #[error(
+        "{file}: `{line}` has {separator} between its columns; separate columns by commas, and write numbers with points"
+    )]
     Separator { file: String, line: String, separator: &'static str },
+    /// Two columns of digits, which may be one number.
+    #[error(
+        "{file}: `{line}` is two columns, or a number with a decimal comma; write it with a point, or choose a column by index"
+    )]
+    DecimalComma { file: String, line: String },
     /// A line with another number of columns than the first.
     #[error(
         "{file}, line {line}: {} where the first line has {expected}; mend the line",

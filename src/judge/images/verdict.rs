@@ -9,6 +9,10 @@ use gate::deviation::{Deviation, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{enough, percent, short};
 
+/// Relative difference from the number of passes of the factor by which a variance is too small, for which it is taken for
+/// the variance of their mean.
+const OF_MEAN: f64 = 0.1;
+
 /// Decides about a stack, and adds the promises of the verdict.
 pub(super) fn decide(judgement: &mut Judgement, stack: &Stack, pixels: &Pixels, claim: &Claim) {
     let refuted = judgement.refuted_by;
@@ -88,6 +92,8 @@ fn furthest<'a>(tiles: impl Iterator<Item = &'a Tile>) -> Option<&'a Tile> {
 /// Returns the reason if the variance is refuted.
 fn too_small(judgement: &Judgement) -> Option<String> {
     let variance = judgement.variance.filter(|variance| variance.is_refuted)?;
+    let passes = judgement.passes as f64;
+    let is_of_mean = passes > 2.0 && (variance.about_mean / passes - 1.0).abs() < OF_MEAN;
     Some(format!(
         "the variance is too small: the passes vary {:.3} times as much, {} (ln E = {:.1} ≥ {:.1}){}",
         variance.about_mean,
@@ -96,6 +102,8 @@ fn too_small(judgement: &Judgement) -> Option<String> {
         variance.limit,
         match judgement.estimate {
             Some(_) => "",
+            None if is_of_mean =>
+                "; that is the number of passes: give the variance of one pass, not that of their mean",
             None => "; if it was estimated from N other passes, say so by --variance-passes N",
         }
     ))

@@ -218,6 +218,18 @@ fn images_that_are_missing_or_without_a_claim_say_so() {
 }
 
 #[test]
+fn a_variance_of_the_mean_is_told_from_that_of_a_pass() {
+    let variance = |pixel: usize| hit(pixel) * (1.0 - hit(pixel));
+    let passes = hits(13, 64, 1.0);
+    for (divisor, is_told) in [(64.0, true), (16.0, false)] {
+        let found = judged(passes.clone(), &claim(|pixel| variance(pixel) / divisor));
+        let said = "that is the number of passes: give the variance of one pass";
+        assert_eq!(found.verdict, Verdict::Fail);
+        assert_eq!(found.reason.contains(said), is_told, "{}", found.reason);
+    }
+}
+
+#[test]
 fn a_tile_that_passes_needs_no_passes() {
     let bytes = npy("<f8", "(64, 32, 32)", &raw(&hits(12, 64, 1.0)));
     let place = Place::new(&[("x.npy", &bytes)]);
