@@ -38,7 +38,7 @@ use std::ops::RangeInclusive;
 
 use self::grid::Grid;
 use crate::light::Heuristic;
-use crate::prediction::raw::Powers;
+use crate::prediction::raw::{HIGHEST, Powers};
 use numeric::{Known, Lane};
 
 pub use predict::predict;
@@ -62,11 +62,6 @@ impl Scene {
     /// ρ of a scattering that goes straight on or turns.
     pub fn phase(&self, turns: bool) -> f64 {
         if turns { 1.0 - self.forward } else { self.forward }
-    }
-
-    /// The optical depth between a place and the sensor.
-    fn to_sensor(&self, u: f64) -> f64 {
-        if self.is_transmitted { self.depth.value - u } else { u }
     }
 }
 
@@ -197,12 +192,14 @@ pub struct Rules {
 fn powers(scene: &Scene, rules: &Rules, [size, step]: [f64; 2]) -> Vec<Powers> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
     let grid = Grid::new(scene.depth.value, size as usize);
-    let by_order: Vec<Vec<Powers>> = match rules.combination {
+    let none = |order: usize| vec![[0.0; HIGHEST + 1]; order + 3];
+    let mut by_order: Vec<Vec<Powers>> = scene.orders.clone().map(none).collect();
+    match rules.combination {
         Combination::Full(heuristic) => {
-            full::moments(scene, rules.connection, heuristic, &grid, step)
+            full::add(scene, (rules.connection, heuristic), &grid, step, &mut by_order);
         }
-        _ => scene.orders.clone().map(|order| paths::moments(scene, rules, order, &grid)).collect(),
-    };
+        _ => paths::add(scene, rules, &grid, &mut by_order),
+    }
     let drawn = |(order, powers): (usize, Vec<Powers>)| {
         let techniques = rules.combination.techniques(order);
         techniques.map(move |s| powers[s]).collect::<Vec<_>>()

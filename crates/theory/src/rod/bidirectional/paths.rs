@@ -1,123 +1,171 @@
-//! Moments of techniques with weights that depend on the directions of a path only.
+//! Paths of given directions: chains of flights along the rod, with a factor `a ρ` at each scattering.
+//!
+//! A technique with weights that depend on the directions of a path only has the moments
 //!
 //! ```text
 //! E[X_s^k] = Σ_directions w_s^k ∫ f c_s^{k−1},   c_s = f/p_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r}
 //! ```
-//!
-//! For given directions f is a chain of flights along the rod, with a factor `a ρ` at each scattering.
 
 use super::grid::{Grid, Operator};
-use super::{Rules, Scene};
+use super::{Rules, Scene, quotient};
 use crate::prediction::raw::{HIGHEST, Powers};
 
-/// `E[X_s^k]`, k = 1 … 8, of the techniques s = 0 … r + 2 of one order.
-pub fn moments(scene: &Scene, rules: &Rules, order: usize, grid: &Grid) -> Vec<Powers> {
-    let chain = Chain::new(scene, rules, grid);
-    let mut sums = vec![[0.0; HIGHEST + 1]; order + 3];
-    for bits in 0..1_u32 << order {
-        let turns: Vec<bool> = (0..order).map(|i| bits >> i & 1 == 1).collect();
-        if let Some(path) = Directions::of(scene, &turns) {
-            chain.add(&path, &mut sums);
+/// Adds `E[X_s^k]`, k = 1 … 8, of the techniques s = 0 … r + 2 of each order.
+pub fn add(scene: &Scene, rules: &Rules, grid: &Grid, sums: &mut [Vec<Powers>]) {
+    let segment = |depth: f64, _| -> Powers {
+        std::array::from_fn(|k| rules.connection.power(depth, k.max(1)))
+    };
+    Chain::new(scene, grid, segment).add(sums, |path, s| {
+        let order = path.turns.len();
+        let weight = rules.combination.weight(&path.phase, s);
+        let ends = quotient(s, order, |_| 1.0, |i| scene.albedo * path.phase[i - 1]);
+        let mut factors = [0.0; HIGHEST + 1];
+        let mut power = 1.0;
+        for factor in &mut factors[1..] {
+            power *= weight;
+            *factor = power;
+            power *= ends;
         }
-    }
-    sums
+        factors
+    });
 }
 
-/// The directions of a path that reaches the sensor.
-struct Directions {
-    /// True for each of the r + 1 segments that goes forward.
-    is_forward: Vec<bool>,
-    /// ρ at each of the r scatterings.
-    phase: Vec<f64>,
-}
-
-impl Directions {
-    /// Directions with turns at these scatterings; `None` where a turn is impossible, or the path does not reach
-    /// the sensor.
-    fn of(scene: &Scene, turns: &[bool]) -> Option<Self> {
-        let mut is_forward = vec![true];
-        for (i, turn) in turns.iter().enumerate() {
-            is_forward.push(is_forward[i] ^ turn);
-        }
-        let phase: Vec<f64> = turns.iter().map(|&turn| scene.phase(turn)).collect();
-        let is_seen = is_forward[turns.len()] == scene.is_transmitted;
-        (is_seen && phase.iter().all(|&phase| phase > 0.0)).then_some(Self { is_forward, phase })
-    }
-}
-
-/// The flights of a path.
-struct Chain<'a> {
+/// The segments of all paths.
+pub struct Chain<'a> {
     scene: &'a Scene,
-    rules: &'a Rules,
     grid: &'a Grid,
-    /// `e^{−d} E[T̂^{k−1}]`, k = 1 … 8, as flights between scatterings.
-    flights: Vec<Operator>,
+    /// Number of kernels of a segment.
+    count: usize,
+    /// Each kernel over the whole rod.
+    through: Vec<f64>,
+    /// Each kernel from the light to the first scattering, by the turn there.
+    light: [Vec<Vec<f64>>; 2],
+    /// Each kernel from the last scattering to the sensor, by the turn there.
+    sensor: [Vec<Vec<f64>>; 2],
+    /// Each kernel between two scatterings with no turn, one turn or two turns; empty where no path is scattered twice.
+    flights: [Vec<Operator>; 3],
+}
+
+/// A path with given turns at its scatterings.
+pub struct Path {
+    /// 1 for each scattering that turns the path round, else 0.
+    turns: Vec<usize>,
+    /// ρ at each scattering.
+    phase: Vec<f64>,
+    /// True for each segment that goes forward.
+    is_forward: Vec<bool>,
+    /// Light that arrives at each scattering.
+    arriving: Vec<Vec<f64>>,
+    /// Light that reaches the sensor from each scattering, `a ρ` included.
+    leaving: Vec<Vec<f64>>,
 }
 
 impl<'a> Chain<'a> {
-    fn new(scene: &'a Scene, rules: &'a Rules, grid: &'a Grid) -> Self {
-        let flights = (1..=HIGHEST).map(|k| grid.operator(|d| rules.connection.power(d, k)));
-        let flights = flights.collect();
-        Self { scene, rules, grid, flights }
-    }
-
-    /// `e^{−d} E[T̂^{k−1}]` from the light to each node.
-    fn light(&self, k: usize) -> Vec<f64> {
-        self.grid.values(|u| self.rules.connection.power(u, k))
-    }
-
-    /// `e^{−d} E[T̂^{k−1}]` from each node to the sensor.
-    fn sensor(&self, k: usize) -> Vec<f64> {
-        self.grid.values(|u| self.rules.connection.power(self.scene.to_sensor(u), k))
-    }
-
-    fn add(&self, path: &Directions, sums: &mut [Powers]) {
-        let (grid, order) = (self.grid, path.phase.len());
-        let scattered = |i: usize| self.scene.albedo * path.phase[i - 1];
-        // Functions of arriving at scattering i, and of leaving it for the sensor, `a ρ` included.
-        let (mut arriving, mut leaving) =
-            (vec![Vec::new(); order + 1], vec![Vec::new(); order + 1]);
-        for i in 1..=order {
-            arriving[i] = if i == 1 {
-                self.light(1)
-            } else {
-                let flown = self.flights[0].over(path.is_forward[i - 1], &arriving[i - 1]);
-                scaled(scattered(i - 1), flown)
-            };
+    /// Segments with kernels that depend on the optical depth and on the product of `a ρ` at both ends. The first kernel
+    /// is that without a connection, the k-th that of the k-th moment of one; the last stands for all further moments.
+    pub fn new<const N: usize>(
+        scene: &'a Scene,
+        grid: &'a Grid,
+        segment: impl Fn(f64, f64) -> [f64; N],
+    ) -> Self {
+        let scattered = [false, true].map(|turns| scene.albedo * scene.phase(turns));
+        let light = scattered.map(|ends| {
+            let at_nodes = grid.values(|u| segment(u, ends));
+            (0..N).map(|i| at_nodes.iter().map(|kernels| kernels[i]).collect()).collect()
+        });
+        let mut sensor: [Vec<Vec<f64>>; 2] = light.clone();
+        if scene.is_transmitted {
+            // Nodes are symmetric about the middle.
+            sensor.iter_mut().flatten().for_each(|kernel| kernel.reverse());
         }
-        for i in (1..=order).rev() {
-            let flown = if i == order {
-                self.sensor(1)
-            } else {
-                self.flights[0].over(!path.is_forward[i], &leaving[i + 1])
-            };
-            leaving[i] = scaled(scattered(i), flown);
-        }
-        // The path with the k-th power of the connection on segment j.
-        let connected = |j: usize, k: usize| match j {
-            _ if order == 0 => self.rules.connection.power(self.scene.depth.value, k),
-            0 => grid.product(&self.light(k), &leaving[1]),
-            _ if j == order => scattered(order) * grid.product(&arriving[order], &self.sensor(k)),
-            _ => {
-                let flown = self.flights[k - 1].over(!path.is_forward[j], &leaving[j + 1]);
-                scattered(j) * grid.product(&arriving[j], &flown)
-            }
-        };
-        let whole = connected(0, 1);
-        for (s, sums) in sums.iter_mut().enumerate() {
-            let weight = self.rules.combination.weight(&path.phase, s);
-            let ends = super::quotient(s, order, |_| 1.0, scattered);
-            let mut power = 1.0;
-            for (k, sum) in sums.iter_mut().enumerate().skip(1) {
-                power *= weight;
-                let is_hit = s == 0 || s == order + 2;
-                *sum += power * if is_hit { whole } else { connected(s - 1, k) };
-                power *= ends;
+        let is_needed = *scene.orders.end() >= 2;
+        let flights = [[0, 0], [0, 1], [1, 1]].map(|[i, j]| {
+            let between = |depth: f64| segment(depth, scattered[i] * scattered[j]);
+            if is_needed { grid.several(between).into() } else { Vec::new() }
+        });
+        let through = segment(scene.depth.value, 1.0).into();
+        Self { scene, grid, count: N, through, light, sensor, flights }
+    }
+
+    /// Adds the moments of all techniques, order by order: each path, or its connection on one segment, times a factor
+    /// for each power.
+    pub fn add(&self, sums: &mut [Vec<Powers>], factors: impl Fn(&Path, usize) -> Powers) {
+        for (order, sums) in self.scene.orders.clone().zip(sums) {
+            for path in (0..1 << order).filter_map(|bits| self.path(order, bits)) {
+                let whole = [self.connected(&path, 0, 0)];
+                for (s, sums) in sums.iter_mut().enumerate() {
+                    let is_hit = s == 0 || s == order + 2;
+                    let kernels = if is_hit { 1..1 } else { 1..self.count };
+                    let connected: Vec<f64> =
+                        kernels.map(|kernel| self.connected(&path, s - 1, kernel)).collect();
+                    let found = if is_hit { &whole[..] } else { &connected };
+                    let factors = factors(&path, s);
+                    for (k, sum) in sums.iter_mut().enumerate().skip(1) {
+                        *sum += factors[k] * found[k.min(found.len()) - 1];
+                    }
+                }
             }
         }
     }
-}
 
-fn scaled(factor: f64, f: Vec<f64>) -> Vec<f64> {
-    f.into_iter().map(|x| factor * x).collect()
+    /// The path with turns at the scatterings of which the bits are 1; `None` where a turn is impossible, or the path
+    /// does not reach the sensor.
+    fn path(&self, order: usize, bits: usize) -> Option<Path> {
+        let turns: Vec<usize> = (0..order).map(|i| bits >> i & 1).collect();
+        let phase: Vec<f64> = turns.iter().map(|&turn| self.scene.phase(turn == 1)).collect();
+        let mut is_forward = vec![true];
+        for (i, turn) in turns.iter().enumerate() {
+            is_forward.push(is_forward[i] ^ (*turn == 1));
+        }
+        if is_forward[order] != self.scene.is_transmitted || phase.contains(&0.0) {
+            return None;
+        }
+        let nothing = vec![Vec::new(); order];
+        let (arriving, leaving) = (nothing.clone(), nothing);
+        let mut path = Path { turns, phase, is_forward, arriving, leaving };
+        for i in 0..order {
+            path.arriving[i] = match i.checked_sub(1) {
+                None => self.light[path.turns[0]][0].clone(),
+                Some(last) => {
+                    let scattered = self.scattered(&path, last, &path.arriving[last]);
+                    self.flight(&path, i, 0).over(path.is_forward[i], &scattered)
+                }
+            };
+        }
+        for i in (0..order).rev() {
+            path.leaving[i] = self.scattered(&path, i, &self.onward(&path, i, 0));
+        }
+        Some(path)
+    }
+
+    /// `a ρ` of a scattering times a function.
+    fn scattered(&self, path: &Path, i: usize, f: &[f64]) -> Vec<f64> {
+        f.iter().map(|x| self.scene.albedo * path.phase[i] * x).collect()
+    }
+
+    /// Flights on the segment before a scattering.
+    fn flight(&self, path: &Path, i: usize, kernel: usize) -> &Operator {
+        &self.flights[path.turns[i - 1] + path.turns[i]][kernel]
+    }
+
+    /// Light that reaches the sensor behind a scattering, with a kernel on the segment that follows.
+    fn onward(&self, path: &Path, i: usize, kernel: usize) -> Vec<f64> {
+        let next = i + 1;
+        if next == path.turns.len() {
+            return self.sensor[path.turns[i]][kernel].clone();
+        }
+        self.flight(path, next, kernel).over(!path.is_forward[next], &path.leaving[next])
+    }
+
+    /// `∫` of the path with a kernel on segment j.
+    fn connected(&self, path: &Path, j: usize, kernel: usize) -> f64 {
+        match j.checked_sub(1) {
+            _ if path.turns.is_empty() => self.through[kernel],
+            None => self.grid.product(&self.light[path.turns[0]][kernel], &path.leaving[0]),
+            Some(i) => {
+                let onward = self.scattered(path, i, &self.onward(path, i, kernel));
+                self.grid.product(&path.arriving[i], &onward)
+            }
+        }
+    }
 }
