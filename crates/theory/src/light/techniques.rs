@@ -121,32 +121,3 @@ impl Techniques {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn weights_of_the_same_path_sum_to_one() {
-        use Combination::{Mis, NextEvent, Unidirectional};
-        for shadow in [Shadow::Exact, Shadow::Ratio] {
-            let mut combinations = vec![Unidirectional, NextEvent];
-            for densities in [Densities::Directional, Densities::Full] {
-                combinations
-                    .extend([Heuristic::Balance, Heuristic::Power].map(|h| Mis(densities, h)));
-            }
-            for combination in combinations {
-                let techniques = Techniques { shadow: Some(shadow), combination };
-                for (phase, nulls) in [(0.3, 0.6), (1.0, 1.0), (0.9, 0.01)] {
-                    let mut ratio = techniques.ratio(phase, nulls);
-                    if techniques.has_nulls() {
-                        ratio *= nulls;
-                    }
-                    let hit = techniques.of_hit(ratio);
-                    let share = techniques.of_shadow_ray(phase, nulls) / (phase * nulls);
-                    assert!((hit + share - 1.0).abs() < 1e-15, "{techniques:?}");
-                }
-            }
-        }
-    }
-}

@@ -106,34 +106,7 @@ pub fn are_enough(phase: &Phase, faintest: f64, count: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use media::phase::{PhaseFunction, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
-
-    #[test]
-    fn isotropic_light_is_spread_by_the_weights_alone() {
-        let directions = Directions::new(&Phase::Isotropic(Isotropic), 12, &[0.3], 0.0);
-        for i in 0..13 {
-            for j in 0..12 {
-                let half = 0.5 * directions.weights[j];
-                assert!((directions.onward.at(i, j) - half).abs() < 1e-15);
-                assert!((directions.back.at(i, j) - half).abs() < 1e-15);
-            }
-        }
-    }
-
-    #[test]
-    fn the_mean_cosine_survives_the_quadrature() {
-        // Light along the axis keeps g of its cosine: Σ (P⁺ − P⁻)μ = g.
-        let phase = HenyeyGreenstein::new(0.6).expect("in range");
-        assert_eq!(phase.moment(1), 0.6);
-        let directions = Directions::new(&Phase::HenyeyGreenstein(phase), 40, &[1.0], 0.0);
-        let kept: f64 = (0..40)
-            .map(|j| {
-                let net = directions.onward.at(40, j) - directions.back.at(40, j);
-                net * directions.cosines[j]
-            })
-            .sum();
-        assert!((kept - 0.6).abs() < 1e-12, "{kept}");
-    }
+    use media::phase::{henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
 
     #[test]
     fn sharper_phase_functions_need_more_directions() {

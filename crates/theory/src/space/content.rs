@@ -256,7 +256,6 @@ fn depth(volume: &Volume, within: &Aabb, x: f64, y: f64) -> Known {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use media::eq21::Eq21;
 
     #[test]
     fn the_safety_factor_has_the_probability_that_is_asked_for() {
@@ -276,13 +275,5 @@ mod tests {
             }
             assert!((chance / MISS_PROBABILITY - 1.0).abs() < 1e-6, "{chance:e}");
         }
-    }
-
-    #[test]
-    fn the_sphere_of_equation_21_holds_what_it_holds() {
-        // By 30-digit arithmetic over its Fourier sum.
-        let known = content(&Eq21).expect("bounded");
-        let off = (known.value - 709.156_283_921_427).abs();
-        assert!(off < 1e-10 && off <= known.error + 1e-12, "{known:?}");
     }
 }

@@ -256,37 +256,3 @@ impl Row {
         weights
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shells_fill_the_ball_and_follow_its_extinction() {
-        let dense = |r2: f64| 40.0 * (1.0 - r2);
-        for centre in [Centre::Medium, Centre::Black(0.5)] {
-            let shells = Shells::new(1.0, centre, &dense, Resolution::COARSE);
-            let inner = if let Centre::Black(core) = centre { core * core } else { 0.0 };
-            assert_eq!(shells.shells[0].from, inner);
-            assert_eq!(shells.shells.last().map(|shell| shell.to), Some(1.0));
-            assert!(shells.shells.windows(2).all(|two| two[0].to == two[1].from));
-            let depth = |s: &Shell| dense(s.from) * (s.to.sqrt() - s.from.sqrt());
-            assert!(shells.shells.iter().all(|shell| depth(shell) < 1.3));
-        }
-    }
-
-    #[test]
-    fn a_row_of_one_value_reproduces_polynomials() {
-        let rules = Rules::new(12);
-        let shells = Shells::new(2.0, Centre::Medium, &|_| 0.1, Resolution::COARSE);
-        let values: Vec<f64> = shells.nodes(&rules).iter().map(|u| 1.0 + u * u * u).collect();
-        for shell in &shells.shells {
-            let mut row = Row::new(shells.count);
-            let u = shell.from + 0.3 * (shell.to - shell.from);
-            row.add(shell, &[u], &[2.0]);
-            let weights = row.weights(&shells, &rules);
-            let found: f64 = weights.iter().zip(&values).map(|(w, x)| w * x).sum();
-            assert!((found - 2.0 * (1.0 + u * u * u)).abs() < 1e-12, "{found}");
-        }
-    }
-}

@@ -83,27 +83,3 @@ pub fn from_point(
     }
     views
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_weights_fill_the_sphere_of_directions() {
-        let rules = Rules::new(20);
-        for centre in [Centre::Medium, Centre::Black(0.4)] {
-            for r in [0.4 + 1e-9, 0.5, 0.9, 1.0 - 1e-9] {
-                let views = from_point(r, 1.0, centre, Resolution::COARSE, &rules);
-                let total: f64 = views.iter().map(|view| view.weight).sum();
-                // Half the solid angle of the black sphere is that of its cone.
-                assert!((total - 1.0).abs() < 1e-11, "{centre:?} at {r}: {total}");
-                if let Centre::Black(core) = centre {
-                    let hits = views.iter().filter(|s| s.from < 0.0 && s.offset2 < core * core);
-                    let share: f64 = hits.map(|view| view.weight).sum();
-                    let exact = 0.5 * (1.0 - (1.0 - core * core / (r * r)).sqrt());
-                    assert!((share - exact).abs() < 1e-9, "{share} instead of {exact} at {r}");
-                }
-            }
-        }
-    }
-}
