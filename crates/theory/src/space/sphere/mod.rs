@@ -21,7 +21,6 @@
 //! Nostrand Reinhold, 1970), section 1.2.
 
 pub mod ball;
-pub mod cache;
 pub mod predict;
 pub mod shells;
 pub mod spread;
@@ -34,7 +33,6 @@ use ball::Ball;
 use shells::{Centre, Resolution, Row, Rules, Shells};
 use spread::Vertex;
 
-pub use cache::{Answer, Scene, cached};
 pub use spread::{Spread, Spreads, Techniques};
 
 /// The radiances at the ends of lines of sight.
@@ -224,81 +222,11 @@ pub fn answers(
     Some(observable.iter().map(known).collect())
 }
 
-/// A black sphere at the centre, if there is one.
-pub fn centre_of(core: Option<f64>) -> Centre {
-    core.map_or(Centre::Medium, Centre::Black)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
-
-    #[test]
-    fn a_white_ball_in_a_white_environment_is_not_seen() {
-        let extinction = |r2: f64| 3.0 - r2;
-        let ball = Ball { radius: 1.3, centre: Centre::Medium, extinction: &extinction };
-        let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
-        for observable in [
-            Observable::Mean(0.0),
-            Observable::Mean(0.9),
-            Observable::Mean(1.3),
-            Observable::Radiance { offset: 0.4, from: f64::NEG_INFINITY },
-            Observable::Radiance { offset: 0.4, from: 0.2 },
-        ] {
-            assert!((solved.answer(observable) - 1.0).abs() < 1e-9, "{observable:?}");
-        }
-    }
-
-    #[test]
-    fn a_white_ball_with_a_lamp_as_bright_as_the_sky_is_not_seen() {
-        let ball = Ball { radius: 1.5, centre: Centre::Black(0.3), extinction: &|_| 1.0 };
-        let lights = Lights { environment: 1.0, core: 1.0 };
-        let solved = Solved::new(&ball, 1.0, lights, Resolution::COARSE).expect("a medium");
-        for observable in [
-            Observable::Mean(0.31),
-            Observable::Mean(1.2),
-            Observable::Radiance { offset: 0.1, from: f64::NEG_INFINITY },
-        ] {
-            assert!((solved.answer(observable) - 1.0).abs() < 1e-9, "{observable:?}");
-        }
-    }
-
-    #[test]
-    fn an_absorber_attenuates_and_nothing_else() {
-        // From the centre all lines of sight are one radius long.
-        let ball = Ball { radius: 2.0, centre: Centre::Medium, extinction: &|_| 0.7 };
-        let solved = Solved::new(&ball, 0.0, SKY, Resolution::COARSE).expect("a medium");
-        assert!((solved.answer(Observable::Mean(0.0)) - (-1.4f64).exp()).abs() < 1e-13);
-        let across = Observable::Radiance { offset: 1.2, from: f64::NEG_INFINITY };
-        assert!((solved.answer(across) - (-0.7f64 * 3.2).exp()).abs() < 1e-13);
-    }
-
-    #[test]
-    fn a_light_and_an_eye_may_change_places() {
-        // Light that enters from all sides and is absorbed by the black sphere, and light that the sphere sends
-        // out: J of the sky at its surface against the power that leaves the ball.
-        let ball =
-            Ball { radius: 1.5, centre: Centre::Black(0.4), extinction: &|r2| 1.5 - 0.4 * r2 };
-        let solve = |lights| Solved::new(&ball, 0.8, lights, Resolution::COARSE).expect("a medium");
-        let sky = solve(SKY);
-        let lamp = solve(Lights { environment: 0.0, core: 1.0 });
-        let rules = Rules::new(40);
-        // Flux onto the black sphere from the sky: ∫ I cos over its surface; and through the ball's
-        // surface from the lamp. Both counted by lines of sight: 2π ∫ I p dp.
-        let out = rules.of(40);
-        let flux = |solved: &Solved, from: f64, to: f64, begin: fn(f64, f64) -> f64| {
-            out.integrate(from, to, |p| {
-                p * solved.answer(Observable::Radiance { offset: p, from: begin(p, 0.4) })
-            })
-        };
-        let far: fn(f64, f64) -> f64 = |_, _| f64::NEG_INFINITY;
-        let near: fn(f64, f64) -> f64 = |p, core| (core * core - p * p).sqrt();
-        let received = flux(&sky, 0.0, 0.4, near);
-        let sent = flux(&lamp, 0.0, 0.4, far) + flux(&lamp, 0.4, 1.5, far);
-        assert!((received - sent).abs() < 1e-5 * sent, "{received} {sent}");
-    }
 
     #[test]
     fn the_square_of_what_a_thin_ball_scatters_is_a_hand_value() {

@@ -5,7 +5,10 @@
 //! combined techniques      E[X²] bounded as in [`super::spread`]
 //! ```
 
-use super::{Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached};
+use super::ball::Ball;
+use super::shells::{Centre, Resolution};
+use super::{Lights, Observable, Solved, Spread, Spreads, Techniques, solved};
+use crate::memo::Memo;
 use crate::problems::Sphere;
 use crate::problems::ball::{Light, Sought};
 use crate::single::Tracking;
@@ -18,6 +21,34 @@ pub const BLURRED: f64 = 1e-4;
 /// Maximum optical depth from the surface to the centre for which the equation is solved.
 pub const DEEPEST: f64 = 30.0;
 
+/// Solution for one observable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The value.
+    pub value: Known,
+    /// Bounds on the second moments of draws, the errors of the solution included.
+    pub spreads: Spreads,
+}
+
+impl Answer {
+    /// Solution under the light of a black sphere, or of the environment where there is none. A distant light is looked
+    /// at from the centre, where the environment stands for it.
+    fn new(ball: &Ball, albedo: f64, observable: Observable, is_distant: bool) -> Option<Self> {
+        let is_black = matches!(ball.centre, Centre::Black(_));
+        let [environment, core] = if is_black { [0.0, 1.0] } else { [1.0, 0.0] };
+        let resolution = Resolution::COARSE.about(ball.centre, ball.radius);
+        let solved = solved(ball, albedo, Lights { environment, core }, resolution)?;
+        let value = resolution.known(solved.each_ref().map(|s| s.answer(observable)));
+        let of = |solved: &Solved| solved.spreads(observable, is_distant);
+        let [fine, coarse, coarsest] = solved.each_ref().map(of);
+        let above = |numbers| {
+            let Known { value, error, .. } = resolution.known(numbers);
+            value + error
+        };
+        Some(Self { value, spreads: Spreads::joined(&[fine?, coarse?, coarsest?], above) })
+    }
+}
+
 /// The exact answer; `None` where the equation is not solved, or the error of the answer is too large.
 pub fn truth(sphere: &Sphere) -> Option<Answer> {
     answer(sphere).filter(|answer| blur(answer) <= BLURRED)
@@ -28,28 +59,38 @@ pub fn blur(answer: &Answer) -> f64 {
     answer.value.error / answer.value.value.abs()
 }
 
-/// The answer with its error; `None` where the equation is not solved.
+/// Answers by the bits of all numbers of a ball, and of σ_t at 33 places, enough to distinguish fields.
+static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
+
+/// The answer with its error; `None` where the equation is not solved. Experiments of one ball share it.
 pub fn answer(sphere: &Sphere) -> Option<Answer> {
     if sphere.majorant() * sphere.radius > DEEPEST {
         return None;
     }
-    let (core, lights) = match sphere.light {
-        Light::BlackSphere(radius) => (Some(radius), Lights { environment: 0.0, core: 1.0 }),
-        Light::Environment | Light::Distant(_) => (None, Lights { environment: 1.0, core: 0.0 }),
+    let (radius, albedo) = (sphere.radius, sphere.scene.albedo.even()?);
+    let (centre, core) = match sphere.light {
+        Light::BlackSphere(core) => (Centre::Black(core), core),
+        Light::Environment | Light::Distant(_) => (Centre::Medium, -1.0),
     };
-    let observable = match sphere.sought {
-        Sought::Radiance => Observable::Radiance { offset: sphere.offset(), from: sphere.begins() },
-        Sought::MeanIntensity => Observable::Mean(sphere.distance()),
+    let is_distant = matches!(sphere.light, Light::Distant(_));
+    let (observable, asked) = match sphere.sought {
+        Sought::Radiance => {
+            let (offset, from) = (sphere.offset(), sphere.begins());
+            (Observable::Radiance { offset, from }, [1.0, offset, from])
+        }
+        Sought::MeanIntensity => {
+            let place = sphere.distance();
+            (Observable::Mean(place), [0.0, place, 0.0])
+        }
     };
-    let scene = Scene {
-        radius: sphere.radius,
-        core,
-        albedo: sphere.scene.albedo.even()?,
-        lights,
-        is_distant: matches!(sphere.light, Light::Distant(_)),
-        observable,
-    };
-    cached(&scene, &|r2| sphere.extinction(r2))
+    let extinction = |r2| sphere.extinction(r2);
+    let places = (0..=32).map(|i| extinction(radius * radius * f64::from(i) / 32.0));
+    let settings = [radius, core, albedo, f64::from(u8::from(is_distant))];
+    let numbers = settings.into_iter().chain(asked).chain(places);
+    ANSWERS.get(numbers.map(f64::to_bits).collect(), || {
+        let ball = Ball { radius, centre, extinction: &extinction };
+        Answer::new(&ball, albedo, observable, is_distant)
+    })
 }
 
 /// G, a bound on `E[T̂²]/T` of tracked shadow rays on any way through a ball:
