@@ -16,6 +16,7 @@
 
 use super::line::{Importance, Line};
 use super::walk::Node;
+use crate::prediction::raw::binomial;
 use crate::problems::rod::Quantity;
 
 /// `E[Y^j X^k]` for j, k = 1, 2, of the absorbed energy and what leaves at one end.
@@ -116,18 +117,36 @@ pub fn joint(line: &Line) -> Option<Joint> {
 
 /// The factorial moments `E[M(M − 1)…(M − n + 1)]` of the number of lookups, n = 1 … 4.
 pub fn lookups(line: &Line) -> Option<[f64; 4]> {
+    lookups_with(line, |_| [1.0, 0.0, 0.0, 0.0, 0.0])
+}
+
+/// The factorial moments of the number of lookups, given those of the K further lookups of a scattering at each node,
+/// n = 0 … 4. The further ones add `σ̂ S₀ Σⱼ (n over j) E[K(K − 1)…(K − j + 1)]` times the moment n − j to a source.
+pub fn lookups_with(line: &Line, further: impl Fn(usize) -> [f64; 5]) -> Option<[f64; 4]> {
     let flow = line.flow(0)?;
-    let mut found = [0.0; 4];
-    let mut worth: Option<Importance> = None;
-    for (n, moment) in (1_i32..).zip(&mut found) {
+    let mut found: Vec<Importance> = Vec::new();
+    for n in 1..=4_usize {
         let source = |at: usize, node: &Node| {
-            let rate = f64::from(n) * node.sampling;
-            let after = worth.as_ref().map_or([1.0; 2], |worth| node.after(0, worth.at(at)));
-            [rate * after[0], rate * after[1]]
+            let worth = |m: usize| if m == 0 { [1.0; 2] } else { found[m - 1].at(at) };
+            // With j or more of the further lookups, and the others afterwards.
+            let further = further(at);
+            let scattered = |m: usize, least: usize| {
+                let mut sum = [0.0; 2];
+                for (j, moment) in further.iter().enumerate().take(m + 1).skip(least) {
+                    let share = binomial(m, j) * moment;
+                    let spread = node.spread(worth(m - j));
+                    sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
+                }
+                sum
+            };
+            let kernel = node.kernel(0);
+            let (own, after, on) = (scattered(n, 1), scattered(n - 1, 0), worth(n - 1));
+            [0, 1].map(|d| {
+                let later = if n == 1 { 1.0 } else { kernel.after(on[d], after[d]) };
+                node.sampling * (kernel.scattered * own[d] + n as f64 * later)
+            })
         };
-        let next = flow.solve(source, [0.0; 2]);
-        *moment = next.entering;
-        worth = Some(next);
+        found.push(flow.solve(source, [0.0; 2]));
     }
-    Some(found)
+    Some(std::array::from_fn(|n| found[n].entering))
 }

@@ -6,25 +6,15 @@ use crate::light::vertex::{Vertex, Weights};
 use crate::rod::line::Line;
 use crate::rod::walk::Node;
 
-/// Scatterings at all nodes: of light that goes forward, and of light that goes backward.
-pub struct Connections(Vec<[Vertex; 2]>);
-
-impl Connections {
-    /// Connections on a line that was made for a σ̂, up to a power.
-    pub fn new(line: &Line, techniques: Techniques, highest: usize) -> Self {
-        let weights = Weights::new(techniques, highest, false);
-        let moments = along(&weights.contour, line);
-        let vertices = line.nodes().iter().zip(&moments).map(|(node, moments)| {
-            let vertex = |towards: f64| weights.vertex(towards, moments, 0.0);
-            [vertex(node.forward), vertex(1.0 - node.forward)]
-        });
-        Self(vertices.collect())
-    }
-
-    /// Scatterings at a node, of light that goes forward and backward.
-    pub fn at(&self, node: usize) -> &[Vertex; 2] {
-        &self.0[node]
-    }
+/// Scatterings at each node of a line that was made for a σ̂, up to a power: of light that goes forward, and of light that
+/// goes backward.
+pub fn connections(line: &Line, techniques: Techniques, highest: usize) -> Vec<[Vertex; 2]> {
+    let weights = Weights::new(techniques, highest, false);
+    let moments = along(&weights.contour, line);
+    let vertices = line.nodes().iter().zip(&moments).map(|(node, moments)| {
+        [node.forward, 1.0 - node.forward].map(|towards| weights.vertex(towards, moments, 0.0))
+    });
+    vertices.collect()
 }
 
 /// Moments of x from each node to the emitter.

@@ -22,17 +22,18 @@
 //! delta: h_k' = σ h_k − k σ̂ ((1 − r) h_{k−1} + r δ_{k1}),  h_0 = 1: its collisions, the real one too
 //! ```
 
-use super::connections::Connections;
+use super::connections::connections;
 use crate::light::vertex::Vertex;
 use crate::light::{Shadow, Techniques};
 use crate::prediction::raw::binomial;
 use crate::rod::line::{Importance, Line};
+use crate::rod::moments::lookups_with;
 use crate::rod::walk::Node;
 
 /// `U_k⁺(0)`, k = 1 … highest.
 pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<Vec<f64>> {
     let flow = line.flow(1)?;
-    let connections = Connections::new(line, techniques, highest);
+    let connections = connections(line, techniques, highest);
     let mut futures: Vec<Importance> = Vec::new();
     let mut found = Vec::new();
     for k in 1..=highest {
@@ -45,7 +46,7 @@ pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<
                 }
                 node.scattering() * sum
             };
-            connections.at(i).each_ref().map(of)
+            connections[i].each_ref().map(of)
         };
         let future = flow.solve(source, [0.0; 2]);
         found.push(future.entering);
@@ -97,32 +98,8 @@ fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
 
 /// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups, and the mean number of those of shadow rays.
 pub fn lookups(line: &Line, techniques: Techniques) -> Option<[f64; 5]> {
-    let flow = line.flow(0)?;
     let of_shadow = shadow_lookups(line, techniques.shadow)?;
-    let mut futures: Vec<Importance> = Vec::new();
-    for n in 1..=4_usize {
-        let source = |i: usize, node: &Node| {
-            let worth = |m: usize| if m == 0 { [1.0; 2] } else { futures[m - 1].at(i) };
-            // With K lookups of a shadow ray and m' lookups afterwards, from one shadow lookup on.
-            let scattered = |m: usize, from: usize| {
-                let mut sum = [0.0; 2];
-                for (j, moment) in of_shadow[i].iter().enumerate().take(m + 1).skip(from) {
-                    let share = binomial(m, j) * moment;
-                    let spread = node.spread(worth(m - j));
-                    sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
-                }
-                sum
-            };
-            let [straight, turned] = node.means;
-            let (shadowed, after, on) = (scattered(n, 1), scattered(n - 1, 0), worth(n - 1));
-            [0, 1].map(|d| {
-                let later = if n == 1 { 1.0 } else { straight * on[d] + turned * after[d] };
-                node.sampling * (turned * shadowed[d] + n as f64 * later)
-            })
-        };
-        futures.push(flow.solve(source, [0.0; 2]));
-    }
+    let [one, two, three, four] = lookups_with(line, |node| of_shadow[node])?;
     let source = |i: usize, node: &Node| [node.scattering() * of_shadow[i][1]; 2];
-    futures.push(flow.solve(source, [0.0; 2]));
-    Some(std::array::from_fn(|n| futures[n].entering))
+    Some([one, two, three, four, line.flow(0)?.solve(source, [0.0; 2]).entering])
 }

@@ -27,7 +27,7 @@ use crate::light::Techniques;
 use crate::light::vertex::Vertex;
 use crate::problems::LitRod;
 use crate::rod::line::{Importance, Line};
-use crate::rod::lit::connections::Connections;
+use crate::rod::lit::connections::connections;
 use crate::rod::lit::walk;
 use crate::rod::walk::Node;
 use media::Piecewise;
@@ -54,11 +54,11 @@ pub fn weighted_square(
 
 /// `Σ_v u_v + ½ max_v u_v`.
 fn spread(line: &Line, techniques: Techniques) -> Option<f64> {
-    let connections = Connections::new(line, techniques, 2);
+    let connections = connections(line, techniques, 2);
     let real = line.straight(1)?;
     let last = |i: usize, node: &Node| {
         let worth = |vertex: &Vertex| vertex.connected[2] + vertex.towards * vertex.hit[2];
-        connections.at(i).each_ref().map(|vertex| node.scattering() * worth(vertex))
+        connections[i].each_ref().map(|vertex| node.scattering() * worth(vertex))
     };
     let earlier = |here: &Importance| {
         let carried =
