@@ -26,6 +26,16 @@ pub enum Proposal {
     Together(Chance),
 }
 
+impl Proposal {
+    /// Number of the channel with the σ̂ of the walk: of a hero, or any.
+    fn number(self) -> usize {
+        match self {
+            Self::Hero(hero) => hero,
+            Self::Together(_) => 0,
+        }
+    }
+}
+
 /// The channels of a medium.
 #[derive(Debug, Clone)]
 pub struct Rates {
@@ -38,13 +48,9 @@ pub struct Rates {
 impl Rates {
     /// A of the exponents k.
     pub fn loss(&self, walk: Proposal, k: &[i32]) -> f64 {
-        let hero = match walk {
-            Proposal::Hero(hero) => hero,
-            Proposal::Together(_) => 0,
-        };
         let total: i32 = k.iter().sum();
         let all: f64 = k.iter().zip(&self.majorants).map(|(&k, own)| f64::from(k) * own).sum();
-        all - f64::from(total - 1) * self.majorants[hero]
+        all - f64::from(total - 1) * self.majorants[walk.number()]
     }
 
     /// `A − N` of the square of a channel, given the extinctions of the channels, with all digits where these are
@@ -60,7 +66,7 @@ impl Rates {
         match walk {
             Proposal::Hero(hero) if hero == channel => own,
             Proposal::Hero(hero) => {
-                let (other, of_hero) = (extinctions[hero], self.majorants[hero]);
+                let (other, of_hero) = (extinctions[hero], self.majorants[walk.number()]);
                 if !is_null {
                     return 2.0 * majorant - of_hero;
                 }
@@ -113,11 +119,11 @@ impl Rates {
 
     /// N of ratio tracking through the walker's σ̂.
     pub fn gain_of_ratio(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> f64 {
-        let hero = match walk {
-            Proposal::Hero(hero) => hero,
-            Proposal::Together(_) => 0,
-        };
-        product(k, |channel| self.majorants[channel] - extinctions[channel], self.majorants[hero])
+        product(
+            k,
+            |channel| self.majorants[channel] - extinctions[channel],
+            self.majorants[walk.number()],
+        )
     }
 }
 

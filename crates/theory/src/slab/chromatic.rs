@@ -25,7 +25,6 @@ use crate::colours::bound::{self, Flight, SecondMomentRates};
 use crate::colours::rates::{Proposal, Rates};
 use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::colours::{self};
-use crate::memo::Memo;
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::ChromaticSlab;
 use crate::problems::channels::End;
@@ -106,8 +105,6 @@ fn critical(incidence: &Incidence, depth: f64) -> f64 {
     high
 }
 
-static CRITICAL: Memo<(String, u64), f64> = Memo::new(256);
-
 impl Body for Slabs<'_> {
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]> {
         let answer = slab::cached(&self.incidence, self.depth(), albedo)?;
@@ -130,8 +127,7 @@ impl Body for Slabs<'_> {
         if is_finite(incidence, near, albedo) && self.power(albedo).is_some() {
             return None;
         }
-        let key = (incidence.phase.label(), depth.to_bits());
-        let critical = CRITICAL.get(key, || critical(incidence, depth));
+        let critical = critical(incidence, depth);
         // With its peak cut off, light along the slab may grow that the whole phase function turns away.
         let is_cut = Resolution::COARSE.cuts(&incidence.phase);
         let is_infinite = !is_cut && !is_finite(incidence, depth * (1.0 - NEAR), albedo);

@@ -119,33 +119,19 @@ impl Resolution {
     pub const LAYERED: Self =
         Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: SLOW, peaked: 72 };
 
-    fn coarser(self) -> Self {
-        Self {
-            faintest: self.faintest.powf(0.75),
-            directions: self.directions * 3 / 4,
-            first_layer: 4.0 * self.first_layer,
-            peaked: self.peaked * 3 / 4,
-            ..self
-        }
-    }
-
-    fn coarsest(self) -> Self {
-        // A sharp phase function needs more directions by its Legendre moments: five eighths of those, too.
-        let faintest = self.faintest.powf(0.625);
-        let [directions, peaked] = [self.directions, self.peaked].map(|count| count * 5 / 8);
-        Self { faintest, directions, peaked, ..self.coarser() }
-    }
-
-    fn half(self) -> Self {
-        let faintest = self.faintest.sqrt();
-        let [directions, peaked] = [self.directions, self.peaked].map(|count| count / 2);
-        Self { faintest, directions, peaked, ..self.coarser() }
+    /// A share of the directions, in eighths, and a thicker first layer. A sharp phase function needs more directions
+    /// by its Legendre moments: the same share of those, too.
+    fn coarser(self, eighths: u8) -> Self {
+        let [directions, peaked] =
+            [self.directions, self.peaked].map(|count| count * usize::from(eighths) / 8);
+        let faintest = self.faintest.powf(f64::from(eighths) / 8.0);
+        Self { faintest, directions, peaked, first_layer: 4.0 * self.first_layer, ..self }
     }
 
     /// Resolution for a phase function: `peaked` is 0 unless its forward peak is cut off.
     fn of(self, phase: &Phase) -> Self {
         let is_whole = self.peaked == 0;
-        if is_whole || directions::are_enough(phase, self.coarser().faintest, self.peaked) {
+        if is_whole || directions::are_enough(phase, self.coarser(6).faintest, self.peaked) {
             Self { peaked: 0, ..self }
         } else {
             Self { gains: PEAKED, ..self }
@@ -186,7 +172,7 @@ pub fn is_sharp(known: Known) -> bool {
 pub fn resolves(phase: &Phase) -> bool {
     let Resolution { peaked, .. } = Resolution::FINE;
     let is_forward = phase.moment(2 * peaked + 1) > 0.0;
-    is_forward || directions::are_enough(phase, Resolution::FINE.coarser().faintest, peaked)
+    is_forward || directions::are_enough(phase, Resolution::FINE.coarser(6).faintest, peaked)
 }
 
 /// The error of a first layer of optical depth u, doubled to τ, is about `13 τ u`.
@@ -279,16 +265,15 @@ fn resolved<S: Scalar>(
     let fine = at(resolution)?;
     let [of_coarsest, of_half] = resolution.gains;
     // Each coarser answer, and the factor of its difference. With fewer directions the series may diverge by mistake.
-    let others = [
-        (resolution.coarser(), SAFETY),
-        (resolution.coarsest(), 1.0 / of_coarsest),
-        (resolution.half(), 1.0 / of_half),
-    ]
-    .map(|(other, factor)| match at(other) {
-        Some(found) => Some((found, factor)),
-        None => thicker(phase, lights, slices, [resolution, other], factor, &fine)
-            .map(|found| (found, 1.0)),
-    });
+    let others =
+        [(6, SAFETY), (5, 1.0 / of_coarsest), (4, 1.0 / of_half)].map(|(eighths, factor)| {
+            let other = resolution.coarser(eighths);
+            match at(other) {
+                Some(found) => Some((found, factor)),
+                None => thicker(phase, lights, slices, [resolution, other], factor, &fine)
+                    .map(|found| (found, 1.0)),
+            }
+        });
     let depth: f64 = slices.iter().map(|slice| slice.rate * slice.lost().leading()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = thin::factor(depth);
@@ -460,7 +445,7 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
         [answer.reflected, answer.transmitted].iter().any(|x| depth.error > OF_DEPTH * x.value)
     };
     let colliding = (albedo <= 1.0 && answers.iter().any(is_faint))
-        .then(|| layers(phase, lights, &[slice], resolution.half().of(phase)))
+        .then(|| layers(phase, lights, &[slice], resolution.coarser(4).of(phase)))
         .flatten();
     let blurred = |(i, (answer, light)): (usize, (Answer, &Light))| {
         // A layer of optical depth δ more has light from all directions, and changes no share by more than the
