@@ -32,13 +32,13 @@ use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
 use media::Piecewise;
-use numeric::{Known, Span};
+use numeric::Known;
 
 /// The exact answer of every channel; `None` where the rod has too many panels for theory.
 pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let support = mesh.support();
     let depth = rod.medium().optical_depth(support);
-    let share = |field: &Piecewise| one_value(field, support);
+    let share = |field: &Piecewise| field.on(support).single_value();
     let closed = share(&rod.albedo).zip(share(&rod.forward));
     let closed = closed.and_then(|(albedo, forward)| closed::known(depth, albedo, forward, 0.0));
     let needed = |quantity: &&Quantity| closed.is_none() || !has_closed_form(**quantity);
@@ -69,11 +69,6 @@ fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
 
 fn has_closed_form(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::Reflected | Quantity::Transmitted | Quantity::Absorbed)
-}
-
-/// The value of a field, if it has only one on an interval.
-fn one_value(field: &Piecewise, span: Span) -> Option<f64> {
-    field.on(span).single_value()
 }
 
 /// Reason why a walk has no variance that draws can be compared with.
@@ -156,18 +151,6 @@ pub fn predict(
             .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),
         ..Prediction::default()
     }
-}
-
-/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the lookups of a walk, with absolute errors; `None` where the rod is too
-/// long.
-pub fn factorial_lookups(
-    mesh: &Mesh,
-    rod: &Rod,
-    sampling: &Piecewise,
-    rule: ParticleRule,
-) -> Option<[Known; 4]> {
-    let walk = Walk::new(mesh, rod, Some(sampling), rule);
-    walk.known(0, &|line| Some(moments::lookups(line)?.to_vec()))?.try_into().ok()
 }
 
 /// Prediction for an unbiased walk with draws in `[0, 1]`: expected values, and `Var[X] ≤ E[X](1 − E[X])`.

@@ -8,10 +8,12 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 
 use super::closed::{self, continued, critical, leaving};
+use super::moments;
+use super::walk::Walk;
 use crate::colours::scatterers::{Body, Divergence, Orders};
 use crate::problems::rod::channels;
 use crate::problems::{Problem, Rod, SpectralRod};
-use crate::{CountDistribution, Mesh, ParticleRule, colours, rod};
+use crate::{CountDistribution, Mesh, ParticleRule, colours};
 use media::Piecewise;
 use numeric::Known;
 
@@ -68,7 +70,8 @@ impl Body for Rods<'_> {
                 [albedo, self.rod.forward].map(|x| Piecewise::constant(x, self.mesh.support()));
             let medium = self.rod.medium().clone();
             let rod = Rod::new(medium, &albedo, &forward, channels(0, false, None));
-            rod::factorial_lookups(self.mesh, &rod, self.sampling, ParticleRule::Analog)
+            let walk = Walk::new(self.mesh, &rod, Some(self.sampling), ParticleRule::Analog);
+            walk.known(0, &|line| Some(moments::lookups(line)?.to_vec()))?.try_into().ok()
         };
         let each = heroes.iter().map(|&(weight, albedo)| Some((weight, of(albedo)?)));
         colours::mixed(each.collect::<Option<Vec<_>>>()?).map(CountDistribution::of_factorial)

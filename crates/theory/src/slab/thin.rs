@@ -18,7 +18,7 @@ use super::{Answer, Light, orders};
 use crate::Kernel;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
-use numeric::{Known, Scalar, exponential_integrals};
+use numeric::{Known, exponential_integrals};
 
 /// Depth of a thin slab: in thinner ones light grazes between the directions of all answers. Differences get the
 /// further factor of this over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
@@ -57,12 +57,11 @@ impl Grazing {
 }
 
 /// Returns the bounds of a stack; unknown where light is scattered more than once by a thick slab.
-pub fn grazing<S: Scalar>(phase: &Phase, light: Light, slices: &[Kernel<S>]) -> Grazing {
-    let sum = |of: &dyn Fn(&Kernel<S>) -> f64| -> f64 {
-        slices.iter().map(|slice| slice.rate * of(slice)).sum()
-    };
-    let scattered = sum(&|slice| slice.scattered.leading().abs());
-    let depth = scattered.max(sum(&|slice| slice.lost().leading().abs()));
+pub fn grazing(phase: &Phase, light: Light, slices: &[Kernel]) -> Grazing {
+    let sum =
+        |of: fn(&Kernel) -> f64| -> f64 { slices.iter().map(|slice| slice.rate * of(slice)).sum() };
+    let scattered = sum(|slice| slice.scattered.abs());
+    let depth = scattered.max(sum(|slice| slice.lost().abs()));
     // Every phase function is largest straight on or straight back.
     let largest = [-1.0, 1.0].map(|cosine| phase.value(cosine)).into_iter().fold(0.0, f64::max);
     let missed = depth * (1.0 - depth.min(1.0).ln());

@@ -188,11 +188,18 @@ pub struct Rules {
     pub has_shares: bool,
 }
 
+/// `E[0^k]`.
+const NOTHING: Powers = {
+    let mut powers = [0.0; HIGHEST + 1];
+    powers[0] = 1.0;
+    powers
+};
+
 /// `E[X_s^k]` of every technique that is drawn, order by order.
 fn powers(scene: &Scene, rules: &Rules, [size, step]: [f64; 2]) -> Vec<Powers> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
     let grid = Grid::new(scene.depth.value, size as usize);
-    let none = |order: usize| vec![[0.0; HIGHEST + 1]; order + 3];
+    let none = |order: usize| vec![NOTHING; order + 3];
     let mut by_order: Vec<Vec<Powers>> = scene.orders.clone().map(none).collect();
     match rules.combination {
         Combination::Full(heuristic) => {

@@ -2,8 +2,8 @@
 
 use super::grid::Grid;
 use super::lookups::{Walks, of_technique};
-use super::{Combination, Connection, Rules, Scene, powers};
-use crate::prediction::raw::{HIGHEST, Powers, Raw, RawMoments, added};
+use super::{Combination, Connection, NOTHING, Rules, Scene, powers};
+use crate::prediction::raw::{Powers, Raw, RawMoments, added};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::{Channel, CountDistribution, Moments, Prediction, Tails};
 use numeric::Known;
@@ -45,7 +45,7 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
             value: 0.0,
             variance: variances[i - 1] * variances[i],
         }));
-        let whole = [&found, &rough].map(|powers| summed(powers));
+        let whole = [&found, &rough].map(|all| all.iter().copied().fold(NOTHING, added));
         let order = *scene.orders.end();
         let is_certain = certain.iter().all(|&is_certain| is_certain);
         let sum = channel(scene.depth, order, [&whole[0], &whole[1]], is_certain);
@@ -102,18 +102,6 @@ fn most_of_sum(resolutions: [&Vec<Powers>; 2]) -> f64 {
 
 fn variance(channel: &Channel) -> f64 {
     channel.moments.map_or(f64::NAN, |moments| moments.variance())
-}
-
-/// The raw moments of a sum of independent draws.
-fn summed(all: &[Powers]) -> Powers {
-    let mut sum = [0.0; HIGHEST + 1];
-    sum[0] = 1.0;
-    for powers in all {
-        let mut powers = *powers;
-        powers[0] = 1.0;
-        sum = added(sum, powers);
-    }
-    sum
 }
 
 /// Prediction for one channel, from its raw moments at two resolutions.
