@@ -8,7 +8,7 @@ use serde::ser::Serializer;
 use crate::report::layout::{self, Column, Grid, Pen};
 use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError};
-use numeric::digits::{count, enough, exact, fixed, percent, short, signed, time};
+use numeric::digits::{count, enough, fixed, number, percent, short, signed, time};
 
 /// Content of one field.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,9 +41,9 @@ impl Cell {
         match self {
             Self::Text(text) => text.clone(),
             Self::Word(word) => word.unwrap_or_default().to_owned(),
-            Self::Number(number) | Self::Score(number, _) => number.map(exact).unwrap_or_default(),
+            Self::Number(x) | Self::Score(x, _) => x.map(number).unwrap_or_default(),
             Self::Count(count) => count.map(|n| n.to_string()).unwrap_or_default(),
-            Self::List(list) => list.iter().map(|&x| exact(x)).collect::<Vec<_>>().join(" "),
+            Self::List(list) => list.iter().map(|&x| number(x)).collect::<Vec<_>>().join(" "),
             Self::Counts(list) => list.iter().map(u32::to_string).collect::<Vec<_>>().join(" "),
             Self::Flag(flag) => flag.map(|is_so| is_so.to_string()).unwrap_or_default(),
             Self::Texts(texts) => texts.join("; "),
@@ -158,7 +158,7 @@ impl Print {
         match self {
             _ if x.is_nan() => String::new(),
             _ if x.is_infinite() => (if x > 0.0 { "∞" } else { "-∞" }).to_owned(),
-            Self::Plain | Self::Right => exact(x),
+            Self::Plain | Self::Right => number(x),
             Self::Short(digits) => short(x, digits),
             Self::Fixed(digits) => fixed(x, digits),
             Self::Places(places) => format!("{x:.places$}"),

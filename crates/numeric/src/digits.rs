@@ -1,8 +1,9 @@
 //! Numbers as text: exact for files, short for people.
 
-/// The shortest text that reads back as the same number, plain or with an exponent.
-pub fn exact(x: f64) -> String {
-    number(x)
+/// The shortest text that reads back as the same number, with an exponent where plain digits would fill the line.
+pub fn number(x: f64) -> String {
+    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
+    if scientific.len() < plain.len() { scientific } else { plain }
 }
 
 /// A number with at most `digits` significant digits, with an exponent where plain notation would hide or pad
@@ -91,13 +92,6 @@ fn trimmed(text: &str) -> String {
     }
 }
 
-/// A number as a message shows it: the shortest digits that read back the same, with an exponent where
-/// plain ones would fill the line.
-pub fn number(x: f64) -> String {
-    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
-    if scientific.len() < plain.len() { scientific } else { plain }
-}
-
 /// A computed number to six decimals; with six digits and an exponent where six decimals would hide digits or pad
 /// them with zeros.
 pub fn rounded(x: f64) -> String {
@@ -113,11 +107,11 @@ mod tests {
     #[test]
     fn exact_numbers_read_back_and_are_short() {
         for x in [0.1, 1.0 / 3.0, 1e300, 5e-324, -2.5, 1e6, 123_456.789, 0.0] {
-            let text = exact(x);
-            assert_eq!(text.parse::<f64>().expect("reads back"), x);
+            assert_eq!(number(x).parse::<f64>().expect("reads back"), x);
         }
-        assert_eq!(exact(1e300), "1e300");
-        assert_eq!(exact(0.25), "0.25");
+        for (x, text) in [(1e308, "1e308"), (0.25, "0.25"), (-1.0, "-1"), (5e-324, "5e-324")] {
+            assert_eq!(number(x), text);
+        }
     }
 
     #[test]
@@ -184,10 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_fills_a_line() {
-        for (x, text) in [(1e308, "1e308"), (0.25, "0.25"), (-1.0, "-1"), (5e-324, "5e-324")] {
-            assert_eq!(number(x), text);
-        }
+    fn no_rounded_number_fills_a_line() {
         for (x, text) in [
             (1.2, "1.200000"),
             (0.0, "0.000000"),

@@ -9,7 +9,7 @@ use crate::judge::{Judgement, images};
 use crate::record::Verdict;
 use crate::report::ReportError;
 use crate::report::run::junit::{Inconclusive, encoded, status_of};
-use numeric::digits::exact;
+use numeric::digits::number;
 
 /// Verdict on a file or a stack of images.
 #[derive(Debug, Clone)]
@@ -32,7 +32,8 @@ impl Told {
             ("variance", judgement.variance),
             ("predicted variance", judgement.predicted_variance),
         ];
-        let known = numbers.iter().filter_map(|(what, x)| Some(format!("{what} {}", exact((*x)?))));
+        let known =
+            numbers.iter().filter_map(|(what, x)| Some(format!("{what} {}", number((*x)?))));
         let mut lines: Vec<String> = known.chain(judgement.guarantees.iter().cloned()).collect();
         lines.extend(judgement.pattern().lines());
         let (verdict, reason) = (judgement.verdict, judgement.reason.clone());
@@ -66,7 +67,7 @@ pub fn text(
 ) -> Result<String, ReportError> {
     let mut report = Report::new("trueflight");
     let mut suite = TestSuite::new("judge");
-    suite.add_property(("alpha", &*exact(alpha)));
+    suite.add_property(("alpha", &*number(alpha)));
     for told in told {
         suite.add_test_case(test(told, inconclusive));
     }

@@ -14,7 +14,7 @@ use crate::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
 use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure};
-use numeric::digits::exact;
+use numeric::digits::number;
 
 /// Result of an inconclusive experiment in JUnit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -47,7 +47,7 @@ fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> Test
     for (name, value) in [
         ("title", case.title.clone()),
         ("seed", results.seed.to_string()),
-        ("alpha", exact(results.alpha)),
+        ("alpha", number(results.alpha)),
         ("version", results.version.clone()),
         ("schema", results.schema.to_string()),
     ] {

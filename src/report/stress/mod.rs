@@ -13,7 +13,7 @@ use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 use crate::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::stress::{Row, Stress};
-use numeric::digits::{exact, short};
+use numeric::digits::{number, short};
 
 /// Folder below the results.
 const FOLDER: &str = "stress";
@@ -35,7 +35,7 @@ pub fn table(found: &Stress, pen: Pen) -> String {
                 "{quantity}: {skipped} skipped, {trials} compared; first skipped: {first_skipped}"
             )
         } else {
-            format!("{}: {} at {}", row.quantity, exact(row.worst), row.place)
+            format!("{}: {} at {}", row.quantity, number(row.worst), row.place)
         };
         pen.say(&mut text, Paint::Red, &said);
     }
@@ -53,7 +53,7 @@ pub fn table(found: &Stress, pen: Pen) -> String {
 
 fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
     let title =
-        format!("single precision: its bias exceeds the error of {} draws from …", exact(DRAWS));
+        format!("single precision: its bias exceeds the error of {} draws from …", number(DRAWS));
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
     let estimators: Vec<&Curve> =
         curves.iter().filter(|curve| curve.along == Along::Steps).collect();
