@@ -116,7 +116,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
     let lines = match light {
         Light::Everywhere => "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n".to_owned(),
         Light::Point { position, power } => {
-            let medium = if scene.shape.contains(position) {
+            let medium = if scene.shape.contains(position.0) {
                 "MediumInterface \"\" \"medium\"\n"
             } else {
                 ""

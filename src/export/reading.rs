@@ -114,7 +114,7 @@ impl Reader<'_> {
         let [eye, direction] = ray.map(|point| Point(point.0.map(single)));
         let name = if problem == "transmittance" { problem } else { "radiance" };
         let Fields { shape, fields } = fields;
-        let is_inside = shape.contains(eye);
+        let is_inside = shape.contains(eye.0);
         let channels: Vec<Channel> =
             fields.into_iter().map(|field| Channel { field, albedo: 0.0 }).collect();
         let mut scene = Scene {
@@ -147,7 +147,7 @@ impl Reader<'_> {
         let own = self.own_grids(body)?;
         let ends_outside = |volume: &Volume, ray: &Ray| {
             let [low, high] = [ray.origin, ray.at(ray.length)];
-            [low, high].iter().all(|&end| !volume.bounds().contains(end))
+            [low, high].iter().all(|&end| !volume.bounds().contains(end.0))
         };
         let mut volumes: Vec<Arc<Volume>> = Vec::new();
         let mut crossing = None;
@@ -280,7 +280,7 @@ impl Reader<'_> {
             power: single(lamp.power),
         };
         let mut scene = self.scene("single-scattering", fields, [ray.origin, ray.direction], light);
-        if Bounds::Box(scene.bounds()).contains(ray.at(ray.length)) {
+        if Bounds::Box(scene.bounds()).contains(ray.at(ray.length).0) {
             scene.notes.push("the ray goes on to where it leaves the box".into());
         }
         for (channel, (_, _, albedo, _)) in scene.channels.iter_mut().zip(chosen) {

@@ -116,7 +116,7 @@ impl<F: Field> InSpace for F {
     }
 
     fn extinction_at(&self, p: Point) -> f64 {
-        if self.bounds().contains(p) { self.value(p.0) } else { 0.0 }
+        if self.bounds().contains(p.0) { self.value(p.0) } else { 0.0 }
     }
 
     fn batches(&self, level: Level, clipped: bool) -> Batches<'_> {

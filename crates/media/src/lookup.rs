@@ -49,7 +49,7 @@ impl<F: Field> Formula<3> for Within<'_, F> {
     fn at<L: Lane>(&self, p: [L; 3]) -> L {
         let found = self.0.value(p);
         match &self.1 {
-            Some(bounds) => Lane::select(bounds.contain(p), found, found.each(0.0)),
+            Some(bounds) => Lane::select(bounds.contains(p), found, found.each(0.0)),
             None => found,
         }
     }

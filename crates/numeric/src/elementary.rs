@@ -217,9 +217,9 @@ pub fn atan(x: f64) -> f64 {
 
 #[cfg(all(test, feature = "packs"))]
 mod tests {
-    use fearless_simd::{Level, Simd, SimdBase, f64x8};
+    use fearless_simd::{Simd, SimdBase, f64x8};
 
-    use super::super::pack::{Task, WIDTH, on};
+    use super::super::pack::{Task, WIDTH, fuses, levels, on};
     use super::super::scalar_lane::{Fused, Plain};
     use super::*;
 
@@ -252,16 +252,6 @@ mod tests {
         }
     }
 
-    fn levels() -> Vec<Level> {
-        let mut levels = vec![Level::new(), Level::baseline()];
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            levels.extend(Level::new().as_avx2().map(Level::Avx2));
-            levels.extend(Level::new().as_sse4_2().map(Level::Sse4_2));
-        }
-        levels
-    }
-
     /// Both roundings are near the exact values, and packs have the bits of one of them.
     fn agree<F: Function>(points: impl Iterator<Item = f64>, bound: impl Fn(f64) -> (f64, f64)) {
         let points: Vec<f64> = points.collect();
@@ -275,8 +265,8 @@ mod tests {
             for chunk in points.as_chunks::<WIDTH>().0 {
                 let values = on(level, OfPack::<F>(*chunk, std::marker::PhantomData));
                 for (&x, value) in chunk.iter().zip(values) {
-                    let fused = super::super::pack::fuses(level);
-                    let scalar = if fused { F::call(Fused(x)).0 } else { F::call(Plain(x)).0 };
+                    let is_fused = fuses(level);
+                    let scalar = if is_fused { F::call(Fused(x)).0 } else { F::call(Plain(x)).0 };
                     assert_eq!(value.to_bits(), scalar.to_bits(), "{x} at {level:?}");
                 }
             }

@@ -1,7 +1,7 @@
 //! The bodies that bound a medium, and where a ray is inside them.
 
-use super::{Point, Ray};
-use crate::double_double::{DoubleDouble, two_prod, two_sum};
+use super::{Point, Ray, grazing};
+use crate::double_double::{DoubleDouble, two_sum};
 use crate::{Known, Lane, Span};
 
 /// A box with its faces along the axes.
@@ -87,18 +87,9 @@ impl Bounds {
         }
     }
 
-    /// Returns true if the point is inside or on the boundary.
-    pub fn contains(&self, p: Point) -> bool {
-        match self {
-            Self::Everywhere => true,
-            Self::Sphere { centre, radius } => (p - *centre).norm() <= *radius,
-            Self::Box(bounds) => bounds.nearest(p) == p,
-        }
-    }
-
-    /// Mask of the points in a lane that are in the body.
+    /// Mask of the points in a lane that are in the body or on its boundary.
     #[inline(always)]
-    pub fn contain<L: Lane>(&self, p: [L; 3]) -> L::Mask {
+    pub fn contains<L: Lane>(&self, p: [L; 3]) -> L::Mask {
         let zero = p[0].each(0.0);
         match self {
             Self::Everywhere => zero.at_most(zero),
@@ -179,26 +170,11 @@ fn clip_sphere_exactly(centre: Point, radius: f64, ray: &Ray) -> Span {
     }
     #[allow(clippy::cast_possible_truncation)] // an exponent
     let power = power as i32;
-    let axis = |i: usize| {
-        let to_centre = two_sum(centre.0[i], -ray.origin.0[i]).scaled(power);
-        (to_centre, ray.direction.0[i])
-    };
-    let axes = [axis(0), axis(1), axis(2)];
-    // The direction has length 1 but for rounding; distances are in units of its true length.
-    let square: DoubleDouble = axes.iter().map(|&(_, d)| two_prod(d, d)).sum();
-    let foot =
-        axes.iter().map(|&(to, d)| to * DoubleDouble::from(d)).sum::<DoubleDouble>() / square;
-    let offset: DoubleDouble = axes
-        .iter()
-        .map(|&(to, d)| {
-            let residual = to - foot * DoubleDouble::from(d);
-            residual * residual
-        })
-        .sum();
-    let radius = DoubleDouble::from(radius).scaled(power);
-    let half = ((radius * radius - offset) / square).sqrt();
+    let to_centre = [0, 1, 2].map(|i| two_sum(centre.0[i], -ray.origin.0[i]).scaled(power));
+    let radius = DoubleDouble::from(radius).scaled(power).high;
+    let (foot, half, is_none) = grazing::foot_and_half(to_centre, radius, ray.direction.0);
     let end = |at: DoubleDouble| at.scaled(-power).value();
-    if half.high <= 0.0 {
+    if is_none {
         return Span::empty(end(foot).clamp(0.0, ray.length));
     }
     Span::new(end(foot - half), end(foot + half)).intersect(ray.span())
@@ -234,13 +210,18 @@ mod tests {
     }
 
     #[test]
-    fn lanes_know_what_a_body_contains() {
+    fn points_on_faces_are_inside() {
         let low = Point([-1.0, 0.0, 2.0]);
         let bodies = [
             Bounds::Everywhere,
             Bounds::Sphere { centre: Point([0.5, 1.0, 2.0]), radius: 1.5 },
             Bounds::Box(Aabb { low, high: Point([2.0, 1.0, 3.0]) }),
         ];
+        let contains = |body: Bounds, p: Point| match body {
+            Bounds::Everywhere => true,
+            Bounds::Sphere { centre, radius } => (p - centre).norm() <= radius,
+            Bounds::Box(within) => within.nearest(p) == p,
+        };
         let mut inside = [0; 3];
         for n in 0..1000 {
             // Halves: many are on a face.
@@ -249,8 +230,8 @@ mod tests {
             };
             let p = [at(0.618, -1.5, 9.0), at(0.414, -0.5, 5.0), at(0.732, 1.0, 6.0)];
             for (count, body) in inside.iter_mut().zip(bodies) {
-                assert_eq!(body.contain(p), body.contains(Point(p)), "{body:?} {p:?}");
-                *count += i32::from(body.contain(p));
+                assert_eq!(body.contains(p), contains(body, Point(p)), "{body:?} {p:?}");
+                *count += i32::from(body.contains(p));
             }
         }
         assert!(inside[0] == 1000 && inside[1..].iter().all(|n| (50..950).contains(n)));

@@ -60,25 +60,6 @@ impl Lanes {
 }
 
 impl<S: Simd> Xoshiro<u64x8<S>> {
-    /// Numbers uniform in `[0, 1)` from the streams that a mask selects. The states of the others do not change, and
-    /// their numbers have no meaning.
-    #[inline(always)]
-    pub fn uniform_where(&mut self, mask: mask64x8<S>) -> f64x8<S> {
-        let [a, b, c, d] = self.state;
-        let number = self.uniform();
-        let [e, f, g, h] = self.state;
-        self.state = [mask.select(e, a), mask.select(f, b), mask.select(g, c), mask.select(h, d)];
-        number
-    }
-
-    /// Numbers of [`Self::ln_uniform`] from the streams that a mask selects, as in [`Self::uniform_where`].
-    #[inline(always)]
-    pub fn ln_uniform_where(&mut self, mask: mask64x8<S>) -> f64x8<S> {
-        // `1 − u` is exact, as it is in `positive_uniform`.
-        let number = self.uniform_where(mask);
-        (number.each(1.0) - number).ln()
-    }
-
     /// States of the streams, in memory.
     #[inline(always)]
     pub fn at_rest(self) -> Lanes {
@@ -114,12 +95,19 @@ impl<S: Simd> Random<f64x8<S>> for Xoshiro<u64x8<S>> {
 
     #[inline(always)]
     fn uniform_where(&mut self, which: mask64x8<S>) -> f64x8<S> {
-        Xoshiro::uniform_where(self, which)
+        let [a, b, c, d] = self.state;
+        let number = Xoshiro::uniform(self);
+        let [e, f, g, h] = self.state;
+        self.state =
+            [which.select(e, a), which.select(f, b), which.select(g, c), which.select(h, d)];
+        number
     }
 
     #[inline(always)]
     fn ln_uniform_where(&mut self, which: mask64x8<S>) -> f64x8<S> {
-        Xoshiro::ln_uniform_where(self, which)
+        // `1 − u` is exact, as it is in `positive_uniform`.
+        let number = self.uniform_where(which);
+        (number.each(1.0) - number).ln()
     }
 }
 
