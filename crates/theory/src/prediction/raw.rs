@@ -60,6 +60,8 @@ pub fn of_cumulants([k1, k2, k3, k4]: [f64; 4]) -> Raw {
 
 /// Powers of a draw with computed means: those of its moments, and the eighth for its tails.
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
+/// One number for each of [`POWERS`].
+pub type PerPower = [f64; POWERS.len()];
 /// Maximum relative error of a higher moment that is given, unless a solver sets another limit.
 pub const RESOLVED: f64 = 0.05;
 /// Maximum size of moments, in units of the expected value, that are rounding.
@@ -79,7 +81,7 @@ impl RawMoments {
     }
 
     /// Raw moments with estimates of their relative errors.
-    pub fn estimated(values: [f64; POWERS.len()], errors: [f64; POWERS.len()]) -> Self {
+    pub fn estimated(values: PerPower, errors: PerPower) -> Self {
         let known = |i: usize| Known::estimated(values[i], errors[i] * values[i].abs());
         Self(std::array::from_fn(known))
     }

@@ -1,8 +1,9 @@
 //! The estimated transmittance from the ray's origin to any point of the ray.
 
 use super::CameraTracking;
-use super::segment::{POWERS, Segment, loss, losses, rounding, size};
+use super::segment::{Segment, loss, losses, rounding, size};
 use crate::Mesh;
+use crate::prediction::raw::POWERS;
 use crate::ray::survival::factorial_rates;
 use media::{Control, Piecewise};
 use numeric::quadrature::GaussLegendre;

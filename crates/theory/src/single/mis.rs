@@ -13,7 +13,7 @@
 //! B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
 //! Transactions on Graphics 38 (2019), section 5.
 
-use super::null_path::{NullPaths, Weighted};
+use super::null_path::NullPaths;
 use super::predict::DENSITY;
 use super::scene::{Node, Place, STEPS, Scene};
 use super::{Collisions, Technique, TechniqueMoments};
@@ -119,8 +119,7 @@ impl Mis<'_> {
         let by_collision = |node: &Node| {
             // Of all walks through σ̂ only those without a real collision reach the point.
             let found = nulls.weights(Made::ByCollision, node.s, ratio(node));
-            let through = |moment: f64| moment / node.transmittance;
-            Weighted { powers: found.powers.map(through), errors: found.errors.map(through) }
+            found.map(|moments| moments.map(|moment| moment / node.transmittance))
         };
         let second = Technique {
             density: &|node| self.collisions.density(node),

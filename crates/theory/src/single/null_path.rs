@@ -4,6 +4,7 @@ use super::shadows::PANELS;
 use crate::Mesh;
 use crate::light::Heuristic;
 use crate::light::contour::{Contour, Made, ROUNDINGS};
+use crate::prediction::raw::{POWERS, PerPower};
 use crate::ray::mesh::Panel;
 use media::Piecewise;
 use numeric::quadrature::GaussLegendre;
@@ -11,15 +12,6 @@ use numeric::{Cumulative, Span};
 
 /// Moments, k = 1 … 4.
 const MOMENTS: usize = 4;
-
-/// The k-th moments of a weight, k = 0 … 4.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Weighted {
-    /// `E[…]`.
-    pub powers: [f64; 5],
-    /// Bounds on their errors.
-    pub errors: [f64; 5],
-}
 
 /// Integrals `∫ σ̂ (1 − (1 − σ_t/σ̂)^s)` along a ray at all exponents, for evaluation at any point.
 pub struct NullPaths<'a> {
@@ -125,8 +117,9 @@ impl<'a> NullPaths<'a> {
         }
     }
 
-    /// The moments of the weights of paths to a point, r = R x.
-    pub fn weights(&self, made: Made, s: f64, ratio: f64) -> Weighted {
+    /// The moments of the weights of paths to a point, r = R x, and bounds on their errors, for [`POWERS`]; the eighth is
+    /// not known.
+    pub fn weights(&self, made: Made, s: f64, ratio: f64) -> [PerPower; 2] {
         // Scores of collisions are those of `E[x^{3/2}]`, not of the larger `E[x^{1/2}]`.
         let line = self.contour.line(if made == Made::ByPoint { ratio } else { ratio.min(1.0) });
         let mut integrals = vec![0.0; self.contour.width()];
@@ -136,10 +129,10 @@ impl<'a> NullPaths<'a> {
         let off = f64::EPSILON * (ROUNDINGS + size) + self.off * size;
         let moments = self.contour.moments(line, &integrals, 1.0);
         let scores = self.contour.scores(line, ratio, &moments, off);
-        let [mut powers, mut errors] = [[0.0; 5]; 2];
-        powers.copy_from_slice(&scores.means[made as usize][..=MOMENTS]);
-        errors.copy_from_slice(&scores.errors[made as usize][..=MOMENTS]);
-        powers[0] = 1.0;
-        Weighted { powers, errors }
+        [scores.means, scores.errors].map(|found| {
+            let mut row = [f64::NAN; POWERS.len()];
+            row[..MOMENTS].copy_from_slice(&found[made as usize][1..=MOMENTS]);
+            row
+        })
     }
 }

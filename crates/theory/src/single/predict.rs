@@ -1,10 +1,8 @@
 //! Draws that scatter at one point, or at one point of each of two techniques.
 
 use super::Collisions;
-use super::null_path::Weighted;
 use super::scene::{Node, Scene};
-use super::segment::POWERS;
-use crate::prediction::raw::{Raw, RawMoments, added};
+use crate::prediction::raw::{POWERS, PerPower, Raw, RawMoments, added};
 use crate::{Channel, CountDistribution, Prediction, Tails};
 use numeric::Known;
 
@@ -14,6 +12,9 @@ pub const MOMENT: f64 = 1e-11;
 const BLURRED: f64 = 1e-2;
 /// Relative difference of two resolutions of lookups at which panels are fine enough.
 pub const LOOKUPS: f64 = 1e-12;
+
+/// Moments of weights at a node, with bounds on their errors.
+pub type Weighted<'a> = dyn Fn(&Node) -> [PerPower; 2] + 'a;
 
 /// Density of a scattering point, and the score at the point.
 pub struct Technique<'a> {
@@ -27,22 +28,17 @@ pub struct Technique<'a> {
     /// the draw, and the lookups are those of the tracking.
     pub found: Option<&'a Collisions<'a>>,
     /// Substitute for the moments of the transmittance from the origin, where weights depend on the walk.
-    pub weighted: Option<&'a dyn Fn(&Node) -> Weighted>,
+    pub weighted: Option<&'a Weighted<'a>>,
 }
 
 impl Technique<'_> {
-    /// Moments of the factor from the walk from the origin, k = 1 … 4 and 8, and bounds on their errors.
-    fn camera(&self, node: &Node) -> [[f64; 5]; 2] {
-        if let Some(weighted) = self.weighted {
-            let Weighted { powers: [_, a, b, c, d], errors: [_, e, f, g, h] } = weighted(node);
-            return [[a, b, c, d, f64::NAN], [e, f, g, h, f64::NAN]];
+    /// Moments of the factor from the walk from the origin, and bounds on their errors.
+    fn camera(&self, node: &Node) -> [PerPower; 2] {
+        match self.weighted {
+            Some(weighted) => weighted(node),
+            None if self.found.is_some() => [[1.0; 5], [0.0; 5]],
+            None => [node.camera.powers, node.camera.powers.map(|power| power * node.camera.error)],
         }
-        if self.found.is_some() {
-            return [[1.0; 5], [0.0; 5]];
-        }
-        let [_, a, b, c, d] = node.camera.powers;
-        let powers = [a, b, c, d, node.camera.eighth];
-        [powers, powers.map(|power| power * node.camera.error)]
     }
 }
 
@@ -88,8 +84,7 @@ impl TechniqueMoments {
             }
             let gain = (technique.gain)(node);
             let [camera, errors] = technique.camera(node);
-            let [_, a, b, c, d] = node.shadow.powers;
-            let shadow = [a, b, c, d, node.shadow.eighth];
+            let shadow = node.shadow.powers;
             let factor = node.error[0] + (technique.blur)(node) + DENSITY;
             let (lookups, shadow_lookups) = match technique.found {
                 Some(collisions) => (collisions.lookups_at(node), node.shadow.lookups[1]),

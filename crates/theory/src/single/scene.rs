@@ -197,7 +197,7 @@ impl<'a> Scene<'a> {
             let gathered = |Place { s, along, .. }: Place, among: Among| {
                 let before = medium.optical_depth(Span::new(from, s)).value;
                 let beyond = if let Some(shadows) = &shadows {
-                    -shadows.at(self.unstretched_by(along), among).powers[1].ln()
+                    -shadows.at(self.unstretched_by(along), among).powers[0].ln()
                 } else {
                     let cast = problem.shadow_medium(s);
                     cast.map_or(0.0, |m| m.optical_depth(m.support()).value)

@@ -1,7 +1,7 @@
 //! An estimated transmittance of one segment: moments of its value and of its lookups.
 
 use super::shadows::thinned;
-use crate::prediction::raw::{self, poisson};
+use crate::prediction::raw::{self, POWERS, PerPower, poisson};
 use crate::ray::survival::{Survival, factorial_rates};
 use media::Medium;
 use numeric::adaptive::{Halved, Limits, halve};
@@ -27,16 +27,11 @@ pub enum Tracking {
     },
 }
 
-/// Powers of a value with computed means.
-pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
-
 /// The moments of an estimated transmittance X and of its lookups N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// `E[X^k]` for k = 0 … 4.
-    pub powers: [f64; 5],
-    /// `E[X⁸]`.
-    pub eighth: f64,
+    /// `E[X^k]` for [`POWERS`].
+    pub powers: PerPower,
     /// `E[N^k]` for k = 0 … 4.
     pub lookups: [f64; 5],
     /// `E[N^k; the walk came through]` for k = 0 … 4.
@@ -65,7 +60,7 @@ pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
 
 /// Losses of all [`POWERS`], with common sums.
 #[inline]
-pub fn losses(control: f64, residual: f64, weight: f64) -> [f64; POWERS.len()] {
+pub fn losses(control: f64, residual: f64, weight: f64) -> PerPower {
     let (mut k, mut sum, mut found) = (0, 0.0, [0.0; POWERS.len()]);
     for (i, power) in POWERS.into_iter().enumerate() {
         while k < power {
@@ -90,12 +85,10 @@ pub fn rounding(size: f64) -> f64 {
 impl Segment {
     /// A transmittance that is known.
     pub fn exact(depth: Known) -> Self {
-        let power = |k: f64| (-k * depth.value).exp();
-        let powers = [1.0, power(1.0), power(2.0), power(3.0), power(4.0)];
+        let powers = POWERS.map(|k| (-f64::from(k) * depth.value).exp());
         let none = [1.0, 0.0, 0.0, 0.0, 0.0];
         let error = 4.0 * depth.error + f64::EPSILON;
-        let size = 4.0 * depth.value;
-        Self { powers, eighth: power(8.0), lookups: none, through: none, error, size }
+        Self { powers, lookups: none, through: none, error, size: 4.0 * depth.value }
     }
 
     /// The transmittance 1 of a segment without a medium.
@@ -106,10 +99,8 @@ impl Segment {
     /// A product of Poisson factors with the given exponents, in the order of [`POWERS`], and the given mean number
     /// of collisions. Walks always come through. `error` is that of the exponents, `size` that of sums of losses.
     pub fn product(exponents: [f64; 5], collisions: f64, [error, size]: [f64; 2]) -> Self {
-        let [a, b, c, d, eighth] = exponents.map(|x| (-x).exp());
-        let lookups = poisson(collisions);
-        let powers = [1.0, a, b, c, d];
-        Self { powers, eighth, lookups, through: lookups, error, size }
+        let (powers, lookups) = (exponents.map(|x| (-x).exp()), poisson(collisions));
+        Self { powers, lookups, through: lookups, error, size }
     }
 
     /// 1 with probability `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
@@ -119,9 +110,8 @@ impl Segment {
         let lookups = raw::of_factorial(factorial);
         // Walks that come through make a Poisson number of null collisions.
         let through = poisson(flown - depth.value).map(|moment| chance * moment);
-        let powers = [1.0, chance, chance, chance, chance];
         let (error, size) = (depth.error + f64::EPSILON, depth.value);
-        Self { powers, eighth: chance, lookups, through, error, size }
+        Self { powers: [chance; POWERS.len()], lookups, through, error, size }
     }
 
     /// The transmittance of a shadow ray.
@@ -256,6 +246,6 @@ mod tests {
         let segment = Segment::decided(Known::exact(length), length, [first, 0.0, 0.0, 0.0]);
         assert_eq!(segment.lookups, [1.0, first, first, first, first]);
         assert_eq!(segment.through[1..], [0.0; 4]);
-        assert_eq!(segment.through[0], segment.powers[1]);
+        assert_eq!(segment.through[0], segment.powers[0]);
     }
 }

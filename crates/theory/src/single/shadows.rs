@@ -98,20 +98,17 @@ impl Shadows {
 }
 
 fn row(segment: &Segment) -> [f64; COUNT] {
-    let Segment { powers: [_, a, b, c, d], eighth, lookups, through, error, size } = *segment;
-    let [_, n1, n2, n3, n4] = lookups;
+    let Segment { powers, lookups: [_, n1, n2, n3, n4], through, error, size } = *segment;
     let [t0, t1, t2, t3, t4] = through;
-    let [a, b, c, d, e] = [a, b, c, d, eighth].map(|power| -power.ln());
+    let [a, b, c, d, e] = powers.map(|power| -power.ln());
     [a, b, c, d, e, n1, n2, n3, n4, t0, t1, t2, t3, t4, error, size]
 }
 
 fn segment(
     [a, b, c, d, e, n1, n2, n3, n4, t0, t1, t2, t3, t4, error, size]: [f64; COUNT],
 ) -> Segment {
-    let [a, b, c, d, eighth] = [a, b, c, d, e].map(|exponent: f64| (-exponent).exp());
     Segment {
-        powers: [1.0, a, b, c, d],
-        eighth,
+        powers: [a, b, c, d, e].map(|exponent: f64| (-exponent).exp()),
         lookups: [1.0, n1, n2, n3, n4],
         through: [t0, t1, t2, t3, t4],
         error: error.max(0.0),
@@ -165,7 +162,7 @@ mod tests {
             assert_eq!(quick.shadows.as_ref().expect("finite").rows.len(), 97);
             let scattered = |node: &Node| {
                 let gained = node.extinction * node.transmittance * node.source;
-                let [_, powers @ ..] = node.shadow.powers;
+                let [powers @ .., _] = node.shadow.powers;
                 let [_, lookups, square, ..] = node.shadow.lookups;
                 let [a, b, c, d] = powers.map(|power| gained * power);
                 [a, b, c, d, gained * lookups, gained * square]
@@ -232,7 +229,7 @@ mod tests {
         for x in [-1.0, -0.99, 0.123, 1.5, 1.999, 2.0] {
             for among in [Among::All, Among::Half] {
                 let found = shadows.at(x, among);
-                assert!((found.powers[1] / of(x).powers[1] - 1.0).abs() < 1e-13, "{x}");
+                assert!((found.powers[0] / of(x).powers[0] - 1.0).abs() < 1e-13, "{x}");
                 assert_eq!(found.lookups, [1.0, 0.0, 0.0, 0.0, 0.0]);
             }
         }

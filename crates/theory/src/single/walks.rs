@@ -106,7 +106,9 @@ fn scattered_at_collisions(scene: &Scene) -> Scattered {
         }
         let h = node.extinction * node.source / sampling;
         let each = added([1.0; 5], of_shadow(node));
-        let of = |k: usize| sampling * power(h, k) * node.camera.powers[k] * node.shadow.powers[k];
+        let of = |k: usize| {
+            sampling * power(h, k) * node.camera.powers[k - 1] * node.shadow.powers[k - 1]
+        };
         let from_first = [1, 2, 3, 4];
         (from_first.map(of), from_first.map(|k| sampling * each[k]), blur(node))
     })
@@ -139,7 +141,7 @@ fn powers_of_sum(
 pub fn at_collisions(scene: &Scene) -> TechniqueMoments {
     let Scattered { panels, lookups: cumulants, off, rounding } = scattered_at_collisions(scene);
     let of = |chain: &Chain, signed: bool| {
-        let scored = |at: &At, h: f64, j: usize| power(h, j) * at.node.shadow.powers[j];
+        let scored = |at: &At, h: f64, j: usize| power(h, j) * at.node.shadow.powers[j - 1];
         let known = powers_of_sum(chain, 4, signed, &scored);
         std::array::from_fn(|k| if k == 0 { 1.0 } else { known[k - 1].begin })
     };
@@ -175,7 +177,7 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> TechniqueMoments {
                     let size = weight.abs();
                     let last = if odd { weight } else { size };
                     let lower = |n: usize| if n == 0 { 1.0 } else { f[n - 1].at[p][i] };
-                    let shadow = at.node.shadow.powers[k];
+                    let shadow = at.node.shadow.powers[k - 1];
                     let term = |n: usize| {
                         let scored = h * shadow * lower(j - n);
                         let later = if n == 0 { 0.0 } else { last * g[j - n].at[p][i] };
@@ -208,12 +210,12 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> TechniqueMoments {
 pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> TechniqueMoments {
     let scored = |node: &Node, k: usize| {
         let p = density(node);
-        p * power(node.extinction * node.source / p, k) * node.shadow.powers[k]
+        p * power(node.extinction * node.source / p, k) * node.shadow.powers[k - 1]
     };
     let found = scattered(scene, |node: &Node| {
         let shadow = of_shadow(node);
         let from_first = [1, 2, 3, 4];
-        let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k]);
+        let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k - 1]);
         let lookups = from_first.map(|k| density(node) * shadow[k]);
         (powers, lookups, blur(node) + 4.0 * DENSITY)
     });
