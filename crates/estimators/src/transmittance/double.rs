@@ -41,7 +41,7 @@ pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusa
 /// The moments on this page's head, and the distribution where r is constant.
 pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
-    let distribution = setup.residual().constant_ratio().map(|ratio| {
+    let distribution = setup.residual().constant_ratio().and_then(|ratio| {
         let mean = prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
         atoms::powers(setup.fields.control_transmittance(), 1.0 - ratio, mean)
     });

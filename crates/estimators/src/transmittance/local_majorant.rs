@@ -46,9 +46,7 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        // It takes more random numbers at each boundary that it crosses.
-        let prediction = setup.product(&Null).predict();
-        zero_or_one(Prediction { random_numbers: None, ..prediction })
+        zero_or_one(setup.product(&Null).predict())
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<Transmittance>, request: Request) {

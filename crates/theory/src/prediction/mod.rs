@@ -21,8 +21,6 @@ pub struct Prediction {
     pub shadow_lookups: Option<f64>,
     /// Lookups of σ_t that recipes for σ̂ and σ_c make for a ray before its first draw, as at explorer points and by pilot rays.
     pub setup_lookups: u64,
-    /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not computed.
-    pub random_numbers: Option<f64>,
     /// The distribution of the draw, where it is known.
     pub distribution: Option<Distribution>,
     /// The covariances of the channels, where there are several.
@@ -161,8 +159,6 @@ pub fn transmittance(depth: Known, log_unit: f64) -> Known {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Increment {
-    /// `g(s_j)`, the quadratic variation at the step's end.
-    pub quadratic_variation: f64,
     /// `E[Δ_j²]`, of one draw, relative to T².
     pub variance: f64,
     /// `E[Δ_j⁴]/E[Δ_j²]²`; 1 where the step has no variance, infinite where it overflows.

@@ -4,13 +4,12 @@ use crate::prediction::count::poisson;
 use crate::prediction::transmittance;
 use crate::{Channel, CountDistribution, Distribution, Mesh, Moments, Prediction, Tails};
 
-/// Prediction for draws that are all `T e^{log_unit}`, with a constant number of lookups and without random numbers.
+/// Prediction for draws that are all `T e^{log_unit}`, with a constant number of lookups.
 pub fn exact(mesh: &Mesh, log_unit: f64, lookups: usize) -> Prediction {
     let depth = mesh.optical_depth();
     let value = transmittance(depth, log_unit).value;
     let channel = Channel::transmittance(depth, log_unit, Moments::certain(value), Tails::LIGHT);
     Prediction {
-        random_numbers: Some(0.0),
         distribution: Some(Distribution::Atoms(vec![(value, 1.0)])),
         ..Prediction::single(channel, CountDistribution::always(lookups as f64))
     }
@@ -24,13 +23,17 @@ pub fn zero_or_one(prediction: Prediction) -> Prediction {
     Prediction { distribution, ..prediction }
 }
 
-/// Values `scale · factor^n` of a Poisson number n with a mean, up to where the tail is below 1e-12.
-pub fn powers(scale: f64, factor: f64, mean: f64) -> Distribution {
-    let most = (mean + 12.0 * mean.sqrt() + 30.0).min(1e4);
+/// Maximum mean of a Poisson number with values that are listed.
+const LARGEST_MEAN: f64 = 1e4;
+
+/// Values `scale · factor^n` of a Poisson number n with a mean; `None` where they are too many.
+pub fn powers(scale: f64, factor: f64, mean: f64) -> Option<Distribution> {
+    if mean > LARGEST_MEAN {
+        return None;
+    }
     let mut atoms: Vec<(f64, f64)> = Vec::new();
     let mut value = scale;
-    for n in (0..u32::MAX).take_while(|&n| f64::from(n) <= most) {
-        let probability = poisson(n, mean);
+    for probability in poisson(mean) {
         match atoms.iter_mut().find(|atom| atom.0 == value) {
             // A factor of 0 or ±1 puts many n on one atom.
             Some(atom) => atom.1 += probability,
@@ -38,5 +41,5 @@ pub fn powers(scale: f64, factor: f64, mean: f64) -> Distribution {
         }
         value *= factor;
     }
-    Distribution::Atoms(atoms)
+    Some(Distribution::Atoms(atoms))
 }

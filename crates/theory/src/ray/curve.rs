@@ -28,21 +28,14 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
         .zip(&upto)
         .map(|(&s, integrals)| {
             let depth = mesh.medium().optical_depth(Span::new(start, s));
-            let (scale, error) = (depth.exp_neg().value, mesh.relative_error());
-            let moments = Moments::of_product(scale, integrals.losses, error);
-            let moments = moments.graded(integrals.grade());
-            Channel {
-                name: format!("T({s})"),
-                losses: Some(integrals.losses),
-                ..Channel::transmittance(depth, 0.0, moments, integrals.tails())
-            }
+            let channel = integrals.channel(depth, 0.0, mesh.relative_error());
+            Channel { name: format!("T({s})"), ..channel }
         })
         .collect();
     let covariances = pairs(&channels, &upto);
     Prediction {
         channels,
         lookups: Some(product.lookups(&mesh, &whole)),
-        random_numbers: Some(whole.flown + 1.0),
         covariances,
         increments: increments(&upto, mesh.relative_error()),
         stable_share: product.stable_share(&mesh),
@@ -61,7 +54,6 @@ fn increments(upto: &[Integrals], error: f64) -> Vec<Increment> {
         let kurtosis = factor.kurtosis().map(|kurtosis| (4.0 * (j2 - j3) + j4).exp() * kurtosis);
         let size: f64 = integrals.losses[1].abs();
         Increment {
-            quadratic_variation: integrals.losses[1].exp_m1(),
             variance: j2.exp() * factor.relative[0],
             kurtosis: kurtosis.unwrap_or(1.0),
             // The step is a difference of integrals, each accurate to its own last digits.

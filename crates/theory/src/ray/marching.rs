@@ -61,11 +61,7 @@ pub fn predict(mesh: &Mesh, log_unit: f64, steps: u32, jitter: bool) -> Predicti
     };
     let truth = Channel::transmittance(mesh.optical_depth(), log_unit, moments, Tails::LIGHT);
     let channel = Channel { mean, ..truth };
-    let random_numbers = Some(f64::from(u8::from(jitter)));
-    Prediction {
-        random_numbers,
-        ..Prediction::single(channel, CountDistribution::always(f64::from(steps)))
-    }
+    Prediction::single(channel, CountDistribution::always(f64::from(steps)))
 }
 
 /// Panels of the offset, between the places at which a step meets a kink of σ_t.

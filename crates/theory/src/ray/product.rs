@@ -16,8 +16,8 @@ use crate::prediction::raw::of_factorial;
 use crate::prediction::transmittance;
 use crate::{Channel, CountDistribution, Mesh, Moments, Prediction, Tails};
 use media::{Control, Piecewise};
-use numeric::Grade;
 use numeric::sum::Sum;
+use numeric::{Grade, Known};
 
 /// A product estimator on a ray: everything its moments depend on.
 #[derive(Clone, Copy)]
@@ -50,12 +50,8 @@ pub struct Integrals {
     pub growth: [f64; 2],
     /// Factorial moments of the number of lookups, k = 1 … 4, see [`super::survival`].
     pub lookups: [f64; 4],
-    /// `∫ σ̂ e^{−K} [q < 1] dt`: mean number of collisions that a random number decides.
-    pub decisions: f64,
     /// `∫σ̂`.
     pub flown: f64,
-    /// `e^{−K(S)}`: share of walks that nothing ends.
-    pub alive: f64,
     /// True if every loss is constant in each panel: then sums over panels are exact.
     pub is_stepwise: bool,
 }
@@ -161,34 +157,27 @@ impl<'a> Product<'a> {
     pub fn predict(&self) -> Prediction {
         let mesh = self.mesh(&[]);
         let all = self.integrals(&mesh, &[mesh.support().to])[0];
-        let depth = mesh.optical_depth();
-        let scale = transmittance(depth, self.log_unit).value;
-        let moments = Moments::of_product(scale, all.losses, mesh.relative_error());
-        let moments = moments.graded(all.grade());
-        let channel = Channel::transmittance(depth, self.log_unit, moments, all.tails());
-        let channel = Channel { losses: Some(all.losses), ..channel };
+        let channel = all.channel(mesh.optical_depth(), self.log_unit, mesh.relative_error());
         let stable_share = if self.laws { self.stable_share(&mesh) } else { None };
         let lookups = self.lookups(&mesh, &all);
-        // One for each flight, the last one included, and one for each collision that a random number decides.
-        let walked = lookups.mean + all.alive + all.decisions;
-        let random_numbers = (self.killing == 0.0).then_some(walked);
-        Prediction { random_numbers, stable_share, ..Prediction::single(channel, lookups) }
+        Prediction { stable_share, ..Prediction::single(channel, lookups) }
     }
 }
 
 impl Integrals {
-    /// Ground of the error of the losses.
-    pub fn grade(&self) -> Grade {
-        if self.is_stepwise { Grade::Proven } else { Grade::Estimated }
-    }
-
-    /// Heaviness of the tails of a draw.
-    pub fn tails(&self) -> Tails {
+    /// Channel of a transmittance of an optical depth, in units of `exp(−log_unit)`, given the relative error of the
+    /// integrals.
+    pub fn channel(&self, depth: Known, log_unit: f64, relative_error: f64) -> Channel {
+        let scale = transmittance(depth, log_unit).value;
+        let moments = Moments::of_product(scale, self.losses, relative_error);
+        let grade = if self.is_stepwise { Grade::Proven } else { Grade::Estimated };
         let [fourth, eighth] = self.growth;
-        Tails {
+        let tails = Tails {
             rare_event_size: self.rarity.exp(),
             eighth_moment_ratio: (eighth - 2.0 * fourth).exp(),
-        }
+        };
+        let channel = Channel::transmittance(depth, log_unit, moments.graded(grade), tails);
+        Channel { losses: Some(self.losses), ..channel }
     }
 
     /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the distribution is
@@ -212,7 +201,6 @@ struct Totals {
     rarity: Sum,
     growth: [Sum; 2],
     survival: Survival,
-    decisions: Sum,
     flown: Sum,
     /// True if a loss is not constant in a panel.
     varies: bool,
@@ -238,10 +226,7 @@ impl Totals {
         let deaths: Vec<f64> = over(&|o| o.death).iter().map(|rate| rate + killing).collect();
         let survivals = over(&|o| o.survival);
         let rates = [nodes.sampling.as_slice(), &deaths, &survivals];
-        let first = self.survival.add(mesh.rule(), panel.span.length(), rates);
-        let open = first.iter().zip(&nodes.outcome);
-        let open: Vec<f64> = open.map(|(f, o)| if o.survival < 1.0 { *f } else { 0.0 }).collect();
-        self.decisions.add(mesh.integral(panel, &open));
+        self.survival.add(mesh.rule(), panel.span.length(), rates);
         self.flown.add(mesh.integral(panel, &nodes.sampling));
     }
 
@@ -251,9 +236,7 @@ impl Totals {
             rarity: self.rarity.value(),
             growth: self.growth.map(|sum| sum.value()),
             lookups: self.survival.factorial(),
-            decisions: self.decisions.value(),
             flown: self.flown.value(),
-            alive: self.survival.alive(),
             is_stepwise: !self.varies,
         }
     }

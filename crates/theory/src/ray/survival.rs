@@ -32,14 +32,13 @@ pub struct Survival {
 }
 
 impl Survival {
-    /// Adds a panel of a length, given σ̂, κ and σ̂q at its nodes. Returns the rates of collisions of walks that are
-    /// still under way, `σ̂ e^{−K}`.
+    /// Adds a panel of a length, given σ̂, κ and σ̂q at its nodes.
     pub fn add(
         &mut self,
         rule: &GaussLegendre,
         length: f64,
         [sampling, lost, survived]: [&[f64]; 3],
-    ) -> Vec<f64> {
+    ) {
         let up_to = |before: &Sum, row: &[f64], f: &[f64]| before.value() + length * dot(row, f);
         let at_node = |(i, row): (usize, &Vec<f64>)| {
             let [lost, survived] =
@@ -53,16 +52,10 @@ impl Survival {
         }
         self.lost.add(length * dot(&rule.weights, lost));
         self.survived.add(length * dot(&rule.weights, survived));
-        rates.into_iter().map(|[first, ..]| first).collect()
     }
 
     /// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4.
     pub fn factorial(&self) -> [f64; 4] {
         self.factorial.map(|sum| sum.value())
-    }
-
-    /// `e^{−K}`, the probability to come through.
-    pub fn alive(&self) -> f64 {
-        (-self.lost.value()).exp()
     }
 }

@@ -79,8 +79,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let moments = Moments { scale: depth.exp_neg().value, ..moments };
     let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
     channel.moments = channel.moments.filter(|_| is_known || flown == 0.0);
-    let random_numbers = Some(flown + 1.0);
-    Prediction { random_numbers, ..Prediction::single(channel, CountDistribution::poisson(flown)) }
+    Prediction::single(channel, CountDistribution::poisson(flown))
 }
 
 /// Cuts towards the end of the support: v decays within a few mean free paths of the end, which may be a millionth

@@ -144,8 +144,8 @@ pub fn infinite(problem: &InfiniteMedium, end: Option<f64>, ratio: Option<f64>) 
             return CountDistribution::always(1.0);
         }
         let (mean, error, pmf) = (1.0 / end, infinite::ROUNDING, Vec::new());
-        let (moments_error, grade, poisson) = (error, Grade::Proven, false);
-        CountDistribution { mean, variance, error, grade, moments_error, kurtosis, poisson, pmf }
+        let (moments_error, grade) = (error, Grade::Proven);
+        CountDistribution { mean, variance, error, grade, moments_error, kurtosis, pmf }
     };
     Prediction { channels, lookups: end.map(law), ..Prediction::default() }
 }
