@@ -229,4 +229,21 @@ mod tests {
         let [near, _] = leaving(2.0, 1.0 - 1e-12, 0.75).expect("finite");
         assert!((near - 1.0 / 3.0).abs() < 1e-11);
     }
+
+    /// Optical depth, and T in 50 digits (mpmath).
+    const DEEP: [(f64, f64); 3] = [
+        (40.0, 5.050_340_863_950_986e-13),
+        (100.0, 1.895_685_551_135_935e-31),
+        (700.0, 1.052_500_688_254_111_8e-215),
+    ];
+
+    /// Hardly anything comes through.
+    #[test]
+    fn the_error_of_a_faint_transmittance_is_relative_to_it() {
+        for (depth, exact) in DEEP {
+            let [_, t] = known(Known::exact(depth), 0.5, 0.5, 0.0).expect("finite");
+            let off = (t.value - exact).abs();
+            assert!(off <= t.error && t.error < 1e-12 * exact, "{depth}: {off:e}, {t:?}");
+        }
+    }
 }

@@ -21,6 +21,68 @@ fn slab(depth: f64, albedo: f64) -> [Kernel; 1] {
     [Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 1.0 }]
 }
 
+/// Adding and doubling with three times the directions is the other method. It confirms the stated error also where the
+/// series diverges with fewer directions.
+#[test]
+fn next_to_criticality_the_error_covers_what_directions_are_missing() {
+    let phase = Phase::Isotropic(Isotropic);
+    let precise = Resolution { directions: 48, first_layer: 1e-12, ..Resolution::FINE };
+    let mut without = [0; 3];
+    for depth in [0.1, 1.0, 4.0] {
+        let at =
+            |albedo: f64, resolution| energies(&phase, &LIGHTS, &slab(depth, albedo), resolution);
+        let (mut low, mut high) = (1.0, 64.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if at(middle, Resolution::COARSE).is_some() { low = middle } else { high = middle }
+        }
+        for exponent in 1..=24 {
+            let albedo = low * (1.0 - 0.5f64.powi(exponent));
+            let found = solve(&phase, &LIGHTS, &slab(depth, albedo), Resolution::COARSE);
+            // The albedo is below the critical one of all directions.
+            let context = format!("{depth}, 1 - 2^-{exponent}");
+            let Some(found) = found else { panic!("{context}: not infinite") };
+            for (count, eighths) in without.iter_mut().zip([6, 5, 4]) {
+                *count += u32::from(at(albedo, Resolution::COARSE.coarser(eighths)).is_none());
+            }
+            let exact = at(albedo, precise);
+            for (i, answer) in found.iter().enumerate() {
+                let exact = exact.as_ref().map_or(f64::INFINITY, |exact| exact[i].reflected);
+                let Known { value, error, .. } = answer.reflected;
+                let context = format!("{context}: {value} ± {error}, {exact}");
+                assert!((value - exact).abs() <= error, "{context}");
+                assert!(exponent > 6 || error < 0.1 * value, "{context}");
+            }
+        }
+    }
+    assert!(without[1..].iter().all(|&count| count > 0), "{without:?}");
+}
+
+/// All directions resolve g = 0.9, and confirm the error with 48 directions and the peak cut off.
+#[test]
+fn a_forward_peak_that_is_cut_off_is_covered_by_the_error() {
+    for depth in [0.2, 1.0, 5.0, 30.0] {
+        for albedo in [0.5, 0.9, 1.0] {
+            let at = |resolution| {
+                solve(&peaked(0.9), &LIGHTS, &slab(depth, albedo), resolution).expect("finite")
+            };
+            let exact = at(Resolution { faintest: 1e-8, first_layer: 1e-11, ..Resolution::FINE });
+            let cut = at(Resolution { peaked: 48, first_layer: 1e-11, ..Resolution::FINE });
+            for (i, (cut, exact)) in cut.iter().zip(&exact).enumerate() {
+                for (cut, exact) in
+                    [(cut.reflected, exact.reflected), (cut.transmitted, exact.transmitted)]
+                {
+                    let off = (cut.value - exact.value).abs();
+                    let context =
+                        format!("{depth}, {albedo}, light {i}: {cut:?}, {exact:?}, {off:e}");
+                    assert!(off <= cut.error + exact.error, "{context}");
+                    assert!(cut.error < 1e-2 * cut.value, "{context}");
+                }
+            }
+        }
+    }
+}
+
 /// Without a cut, 200 directions resolve g = 0.95 to 1e-9. For g = 0.99, 144 directions confirm the error of 72.
 #[test]
 fn peaks_that_most_directions_do_not_resolve_have_answers() {
