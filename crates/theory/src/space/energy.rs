@@ -251,6 +251,19 @@ mod tests {
     }
 
     #[test]
+    fn bounds_are_those_worked_by_hand() {
+        // Weighted: v/ℓ = (1 − a)(1 − r)/(1 + a), largest where r vanishes.
+        let bound = walks(ParticleRule::Weighted, 1.0, 0.5).energy_variance().expect("bounded");
+        assert!((3.0 * bound - 1.0).abs() < 1e-11, "{bound}");
+        // Analog: 1 − (1 − a) r, at most 1.
+        let bound = walks(ParticleRule::Analog, 1.0, 0.5).energy_variance().expect("bounded");
+        assert!((bound - 1.0).abs() < 1e-11, "{bound}");
+        // Terminating without albedo: v = (r − 1)(2 − r), ℓ = 2 − r beyond 1.
+        let bound = walks(ParticleRule::Terminating, 1.9, 0.0).energy_variance().expect("bounded");
+        assert!(bound >= 1.0, "{bound}");
+    }
+
+    #[test]
     fn beyond_the_limit_only_thin_volumes_have_a_bound() {
         let rule = ParticleRule::NonTerminating;
         // 2/(a + 1) = 1.25 for a = 0.6.

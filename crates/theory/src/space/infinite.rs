@@ -116,3 +116,43 @@ pub fn square_at_absorption(albedo: f64, mean_cosine: f64) -> f64 {
     let lost = (1.0 - albedo) + albedo * (1.0 - mean_cosine);
     2.0 / ((1.0 - albedo) * lost)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_scattering_there_is_one_collision() {
+        // φ = e^{−r}/(4π r²), and 1 − e^{−R} of all particles collide within R.
+        for distance in [0.1, 1.0, 5.0] {
+            let collisions = collisions_within(0.0, distance);
+            let exact = -(-distance).exp_m1();
+            assert!((collisions.value / exact - 1.0).abs() < 1e-13, "{collisions:?} {exact}");
+            let exact = (-distance).exp() / (4.0 * PI * distance * distance);
+            assert!((fluence(0.0, distance).value / exact - 1.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn the_share_of_a_thin_shell_keeps_its_digits() {
+        assert!((share(1e-6) / 5e-13 - 1.0).abs() < 1e-6);
+        for x in [0.5, 0.999_999] {
+            assert!((share(x) / (1.0 - (1.0 + x) * f64::exp(-x)) - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn all_collisions_lie_within_a_great_distance() {
+        for albedo in [0.01, 0.029, 0.031, 0.3, 0.9, 0.99] {
+            let all = collisions_within(albedo, 2e3).value;
+            assert!((all * (1.0 - albedo) - 1.0).abs() < 1e-12, "{albedo}: {all}");
+        }
+    }
+
+    #[test]
+    fn particles_are_absorbed_farther_out_the_more_they_scatter_forward() {
+        // One flight of mean square 2; scattered straight on it is one flight through 1 − a.
+        assert_eq!(square_at_absorption(0.0, 0.3), 2.0);
+        assert!((square_at_absorption(0.75, 1.0) - 32.0).abs() < 1e-12);
+    }
+}
