@@ -199,7 +199,7 @@ impl Vertices {
         }
         let nulls = (self.camera == CameraTracking::Ratio)
             .then(|| NullPaths::new(&setup.fields.mesh, &setup.fields.sampling, self.heuristic));
-        let scene = &scene(setup, (self.camera, shadow), setup.fields.sampling.knots().to_vec());
+        let scene = &scene(setup, self.camera, shadow);
         let (collisions, heuristic) = (absorption.collisions(setup), self.heuristic);
         let [first, second] = Mis { scene, collisions, heuristic, nulls }.points();
         let found = if self.is_one { first.either(&second) } else { first.plus(&second) };
@@ -215,8 +215,8 @@ impl Vertices {
             let light = if self.light { from_light(node) } else { 0.0 };
             light + from_main(node)
         };
-        let cuts = if self.main { setup.fields.control.breaks() } else { Vec::new() };
-        let scene = scene(setup, (self.camera, shadow), cuts);
+        let kinks = || if self.main { setup.fields.control.breaks() } else { Vec::new() };
+        let scene = scene(setup, self.camera, shadow);
         let of = |density: &dyn Fn(&Node) -> f64| {
             let technique = theory::single::Technique {
                 density,
@@ -225,7 +225,7 @@ impl Vertices {
                 found: None,
                 weighted: None,
             };
-            TechniqueMoments::of(&scene, &technique)
+            TechniqueMoments::of(&scene, &technique, kinks())
         };
         match (self.light, self.main) {
             (true, true) => of(&from_light).plus(&of(&from_main)),
@@ -241,27 +241,14 @@ pub fn at_collisions(
     absorption: Absorption,
     shadow: Tracking,
 ) -> TechniqueMoments {
-    let collisions = absorption.collisions(setup);
-    let technique = theory::single::Technique {
-        density: &|node| collisions.density(node),
-        gain: &|node| collisions.worth(node),
-        blur: &|node| node.error[1],
-        found: Some(&collisions),
-        weighted: None,
-    };
-    let knots = setup.fields.sampling.knots().to_vec();
-    TechniqueMoments::of(&scene(setup, (CameraTracking::Exact, shadow), knots), &technique)
+    absorption.collisions(setup).points(&scene(setup, CameraTracking::Exact, shadow))
 }
 
-/// The setup for theory, with more kinks of the integrand.
-fn scene(
-    setup: &Setup<SingleScattering>,
-    (camera, shadow): (CameraTracking, Tracking),
-    cuts: Vec<f64>,
-) -> Scene<'_> {
+/// The setup for theory.
+fn scene(setup: &Setup<SingleScattering>, camera: CameraTracking, shadow: Tracking) -> Scene<'_> {
     let camera =
         Camera::new(&setup.fields.mesh, &setup.fields.sampling, &setup.fields.control, camera);
-    Scene::new(&setup.problem, camera, shadow, cuts)
+    Scene::new(&setup.problem, camera, shadow)
 }
 
 impl Plan {
@@ -303,7 +290,7 @@ impl Plan {
     }
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let scene = || scene(setup, (CameraTracking::Ratio, self.shadow), Vec::new());
+        let scene = || scene(setup, CameraTracking::Ratio, self.shadow);
         match &self.technique {
             Technique::Vertices(vertices) => vertices.predict(setup, self.shadow),
             Technique::Interactions => along::at_collisions(&scene()).prediction(),

@@ -62,7 +62,7 @@ fn shares(case: &Shared, seen: &mut Seen) -> Option<()> {
     let sampling = &Piecewise::constant(scale * largest, mesh.support());
     let along = if has_nulls { CameraTracking::Ratio } else { CameraTracking::Exact };
     let camera = Camera::new(&mesh, sampling, &Control::None, along);
-    let scene = &Scene::new(&problem, camera, Tracking::Exact, Vec::new());
+    let scene = &Scene::new(&problem, camera, Tracking::Exact);
     let collisions = Collisions { medium, sampling, scatters: problem.albedo() };
     let nulls = has_nulls.then(|| NullPaths::new(&mesh, sampling, heuristic));
     let [light, walk] = Mis { scene, collisions, heuristic, nulls }.points();
@@ -77,7 +77,7 @@ fn radiance(problem: &SingleScattering) -> Known {
     let mesh = Mesh::even(problem.medium().clone(), 1);
     let (nothing, none) = (Piecewise::constant(0.0, mesh.support()), Control::None);
     let camera = Camera::new(&mesh, &nothing, &none, CameraTracking::Exact);
-    Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
+    Scene::new(problem, camera, Tracking::Exact).radiance()
 }
 
 /// An estimator without lookups of shadow rays.

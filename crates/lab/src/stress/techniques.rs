@@ -73,14 +73,12 @@ impl Estimator<'_> {
             Control::None
         };
         let camera = Camera::new(&mesh, &flown, &control, along);
-        let scene = &Scene::new(problem, camera, self.tracking, Vec::new());
+        let scene = &Scene::new(problem, camera, self.tracking);
         let of = |density: &dyn Fn(&Node) -> f64, blur: &dyn Fn(&Node) -> f64| {
             let gain = |node: &Node| node.extinction * node.source / density(node);
             let (found, weighted) = (None, None);
-            TechniqueMoments::of(
-                scene,
-                &single::Technique { density, gain: &gain, blur, found, weighted },
-            )
+            let technique = single::Technique { density, gain: &gain, blur, found, weighted };
+            TechniqueMoments::of(scene, &technique, Vec::new())
         };
         let by_angle = |node: &Node| problem.equiangular_density_beyond(node.along);
         match technique {
@@ -95,15 +93,7 @@ impl Estimator<'_> {
                 of(&density, &|node| DENSITY + f64::EPSILON * rate * node.s)
             }
             Technique::Delta => {
-                let collisions = Collisions { medium, sampling: &flown, scatters: 1.0 };
-                let technique = single::Technique {
-                    density: &|node| collisions.density(node),
-                    gain: &|node| collisions.worth(node),
-                    blur: &|node| node.error[1],
-                    found: Some(&collisions),
-                    weighted: None,
-                };
-                TechniqueMoments::of(scene, &technique)
+                Collisions { medium, sampling: &flown, scatters: 1.0 }.points(scene)
             }
         }
     }

@@ -85,8 +85,3 @@ impl<'a> Chain<'a> {
         Solved { at, begin: beyond }
     }
 }
-
-/// The panels, each cut in two.
-pub fn halved(panels: &[Span]) -> Vec<Span> {
-    panels.iter().flat_map(|x| x.halves()).collect()
-}

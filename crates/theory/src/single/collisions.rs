@@ -6,7 +6,8 @@
 //!
 //! c, the probability that a real collision scatters, is the albedo, or 1 where the albedo is a weight.
 
-use super::scene::Node;
+use super::scene::{Node, Scene};
+use super::{Technique, TechniqueMoments};
 use crate::prediction::raw::{Raw, added, poisson};
 use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Span};
@@ -36,6 +37,18 @@ impl Collisions<'_> {
     /// The density of scatterings.
     pub fn density(&self, node: &Node) -> f64 {
         node.extinction * self.scatters * node.transmittance
+    }
+
+    /// Moments of draws that scatter at the first real collision.
+    pub fn points(&self, scene: &Scene) -> TechniqueMoments {
+        let technique = Technique {
+            density: &|node| self.density(node),
+            gain: &|node| self.worth(node),
+            blur: &|node| node.error[1],
+            found: Some(self),
+            weighted: None,
+        };
+        TechniqueMoments::of(scene, &technique, self.sampling.knots().to_vec())
     }
 
     /// Score of a scattering without its shadow ray.

@@ -51,7 +51,9 @@ impl Mis<'_> {
     }
 
     fn points_of(&self, technique: &Technique) -> TechniqueMoments {
-        TechniqueMoments::with_cuts(self.scene, technique, self.layers())
+        let mut kinks = self.layers();
+        kinks.extend(self.collisions.sampling.knots());
+        TechniqueMoments::of(self.scene, technique, kinks)
     }
 
     /// Places towards the ends of the ray, each half as far as the one before. Where σ_t vanishes, weights change from one
@@ -166,7 +168,7 @@ mod tests {
         let sampling = &Piecewise::constant(0.91, mesh.support());
         for heuristic in [Heuristic::Balance, Heuristic::Power] {
             let camera = Camera::new(&mesh, sampling, &Control::None, CameraTracking::Exact);
-            let scene = &Scene::new(&problem, camera, Tracking::Exact, Vec::new());
+            let scene = &Scene::new(&problem, camera, Tracking::Exact);
             let collisions = Collisions { medium, sampling, scatters: 0.7 };
             let [light, walk] = Mis { scene, collisions, heuristic, nulls: None }.points();
             let truth = scene.radiance();

@@ -67,17 +67,12 @@ pub const DENSITY: f64 = 4.0 * f64::EPSILON;
 const LEAST: f64 = 1e-280;
 
 impl TechniqueMoments {
-    /// Moments of one technique.
-    pub fn of(scene: &Scene, technique: &Technique) -> Self {
-        Self::with_cuts(scene, technique, Vec::new())
-    }
-
-    /// Moments of one technique, by panels that end at cuts, too.
-    pub fn with_cuts(scene: &Scene, technique: &Technique, cuts: Vec<f64>) -> Self {
+    /// Moments of one technique, by panels that end at the kinks of its density and gain, too.
+    pub fn of(scene: &Scene, technique: &Technique, kinks: Vec<f64>) -> Self {
         let mut parts = [MOMENT; 14];
         parts[5..9].fill(LOOKUPS);
         parts[9..].fill(f64::INFINITY);
-        let found = scene.integrate(parts, cuts, &|node| {
+        let found = scene.integrate(parts, kinks, &|node| {
             let density = (technique.density)(node);
             if density <= 0.0 {
                 return [0.0; 14];

@@ -82,8 +82,6 @@ pub struct Scene<'a> {
     pub camera: Camera<'a>,
     /// Tracking of the transmittances of shadow rays.
     pub shadow: Tracking,
-    /// More kinks of the integrands.
-    pub cuts: Vec<f64>,
     rule: GaussLegendre,
     /// True if panels hold several pieces of the medium.
     is_thinned: bool,
@@ -104,15 +102,10 @@ pub struct Integral<const N: usize> {
 
 impl<'a> Scene<'a> {
     /// Joins the parts.
-    pub fn new(
-        problem: &'a SingleScattering,
-        camera: Camera<'a>,
-        shadow: Tracking,
-        cuts: Vec<f64>,
-    ) -> Self {
+    pub fn new(problem: &'a SingleScattering, camera: Camera<'a>, shadow: Tracking) -> Self {
         let rule = GaussLegendre::new(16);
         let (_, is_thinned) = thinned(problem.medium().breaks());
-        let mut scene = Self { problem, camera, shadow, cuts, rule, is_thinned, shadows: None };
+        let mut scene = Self { problem, camera, shadow, rule, is_thinned, shadows: None };
         scene.shadows = scene.interpolated(shadow);
         scene
     }
@@ -255,7 +248,6 @@ impl<'a> Scene<'a> {
         mut cuts: Vec<f64>,
         f: &dyn Fn(&Node) -> [f64; N],
     ) -> Integral<N> {
-        cuts.extend(&self.cuts);
         cuts.extend(self.camera.cuts());
         cuts.extend(self.shadows.iter().flat_map(|shadows| self.places(shadows)));
         let mut found = self.over(parts, cuts, &|place| f(&self.node(place)));

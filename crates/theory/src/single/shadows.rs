@@ -149,7 +149,7 @@ mod tests {
         for tracking in [Tracking::Exact, Tracking::Ratio { sampling: 1.2, control: 0.0 }] {
             let scene = || {
                 let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
-                Scene::new(&problem, camera, tracking, Vec::new())
+                Scene::new(&problem, camera, tracking)
             };
             let (exact, mut quick) = (scene(), scene());
             assert!(exact.shadows.is_none());
@@ -186,7 +186,7 @@ mod tests {
         let mesh = Mesh::new(problem.medium().clone());
         let (sampling, control) = (Piecewise::constant(1.2, mesh.support()), Control::None);
         let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
-        let radiance = Scene::new(&problem, camera, Tracking::Exact, Vec::new()).radiance();
+        let radiance = Scene::new(&problem, camera, Tracking::Exact).radiance();
         let quick = crate::single::quick::radiance(&problem, 48);
         let off = (radiance.value - quick.value).abs();
         assert!(radiance.error < 1e-4 * radiance.value, "{radiance:?}");
@@ -203,7 +203,7 @@ mod tests {
         assert!(is_thinned && ends.len() <= PANELS + 1, "{}", ends.len());
         let (sampling, control) = (Piecewise::constant(1.2, mesh.support()), Control::None);
         let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
-        let scene = Scene::new(&problem, camera, Tracking::Exact, Vec::new());
+        let scene = Scene::new(&problem, camera, Tracking::Exact);
         let scattered = |node: &Node| [node.extinction * node.transmittance * node.source];
         let found = scene.integrate([1e-9], Vec::new(), &scattered);
         let piece = |ends: &[f64]| {

@@ -7,7 +7,7 @@
 //! ```
 
 use super::camera::Losses;
-use super::chain::{At, Chain, Solved, halved};
+use super::chain::{At, Chain, Solved};
 use super::predict::{DENSITY, LOOKUPS, MOMENT, TechniqueMoments};
 use super::scene::{Node, Scene};
 use super::segment::Segment;
@@ -39,7 +39,8 @@ fn both(
     powers: impl Fn(&Chain) -> [[f64; 5]; 2],
 ) -> RawMoments {
     let [coarse, _] = powers(&Chain::new(scene, panels, Among::Half));
-    let [fine, sizes] = powers(&Chain::new(scene, &halved(panels), Among::All));
+    let halved: Vec<Span> = panels.iter().flat_map(|x| x.halves()).collect();
+    let [fine, sizes] = powers(&Chain::new(scene, &halved, Among::All));
     let known = |k: usize| {
         let rounded = (SUMS + rounding) * sizes[k].abs().max(fine[k].abs());
         Known::of_resolutions(fine[k], coarse[k]).blurred(rounded)

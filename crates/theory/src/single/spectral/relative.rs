@@ -203,7 +203,7 @@ impl<'a> Relative<'a> {
     pub fn predict(&self, alone: &[TechniqueMoments], of_heroes: Option<Raw>) -> Prediction {
         let none = Control::None;
         let camera = Camera::new(self.meshes[0], self.sampling, &none, CameraTracking::Exact);
-        let scene = Scene::new(&self.channels[0], camera, Tracking::Exact, Vec::new());
+        let scene = Scene::new(&self.channels[0], camera, Tracking::Exact);
         let mut parts = [f64::INFINITY; ROWS];
         let last = self.powers.len() - 1;
         parts[..last].fill(MOMENT);
