@@ -31,7 +31,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Solution under the light of a black sphere, or of the environment where there is none. A distant light is looked
+    /// Solution under the light of a black sphere, or of the environment in a ball without one. A distant light is looked
     /// at from the centre, where the environment stands for it.
     fn new(ball: &Ball, albedo: f64, observable: Observable, is_distant: bool) -> Option<Self> {
         let is_black = matches!(ball.centre, Centre::Black(_));
