@@ -135,10 +135,11 @@ impl Table {
         let place = match column {
             None if count > 1 => {
                 let (file, line) = (file(), brief(&names.join(",")));
-                let is_digits = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
-                return Err(if line.contains(';') {
+                let are_digits = |text: &String| text.parse::<u64>().is_ok();
+                let is_number = !is_name(names[0].as_bytes());
+                return Err(if is_number && line.contains(';') {
                     ForeignError::Separator { file, line, separator: "semicolons" }
-                } else if count == 2 && is_digits(&names[1]) && !is_name(names[0].as_bytes()) {
+                } else if is_number && count == 2 && are_digits(&names[1]) {
                     ForeignError::DecimalComma { file, line }
                 } else {
                     ForeignError::ManyColumns { file, count, columns: listed() }
@@ -372,6 +373,8 @@ mod tests {
         for (text, column, said) in [
             ("T,X\n1,2\n", None, ": 2 columns (T, X); choose one by name or index"),
             ("1,2.5\n", None, ": 2 columns (0, 1); choose"),
+            ("T (a;b),X\n1,2\n", None, ": 2 columns (T (a;b), X); choose"),
+            ("5,\n", None, ": 2 columns (0, 1); choose"),
             ("0,25\n", None, ": `0,25` is two columns, or a number with a decimal comma; write"),
             ("0,5;1,5\n", None, ": `0,5;1,5` has semicolons between its columns; separate"),
             ("T,X\n1,2\n", Some("Y"), ": no column `Y` among T, X; choose"),
