@@ -71,15 +71,13 @@ pub mod plan;
 pub mod record;
 pub mod render;
 pub mod report;
-pub mod self_test;
 
-pub use ::{estimators, gate, lab, media, numeric, theory};
+pub use ::{estimators, gate, media, numeric, theory};
 pub use case::Catalogue;
 pub use estimators::{recipes, setup};
 pub use gate::stats;
 pub use gate::{Check, Gate, check, check_with, claim};
 pub use judge::OfCase;
-pub use lab::{mutants, stress};
 pub use media::{catalogue, files, page, phase};
 pub use numeric::{geometry, rng};
 pub use theory::problems;

@@ -88,7 +88,7 @@ const CASES: BuiltIn = cases![
     "rod/bidirectional-known-bugs" in "tests/",
 ];
 
-/// Cases of `trueflight self-test`, which are not part of the suite.
+/// Cases of `trueflight-lab self-test`, which are not part of the suite.
 const CALIBRATION: BuiltIn = cases![
     "transmittance/calibration" in "tests/",
     "free-flight/calibration" in "tests/",

@@ -1,8 +1,6 @@
 //! `trueflight list` and `trueflight explain`: the catalogue, from the code's own documentation.
 
 use std::ffi::OsStr;
-use std::fmt::Write;
-use std::io::IsTerminal;
 
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::error::ErrorKind;
@@ -10,23 +8,21 @@ use clap::{Args, ValueEnum};
 
 use super::Console;
 use super::help::Names;
-use super::output::{self, Format};
-use crate::case::Case;
+use super::listing::{Row, print_pages, print_rows};
+use super::output::Format;
 use crate::case::catalogue::{Catalogue, built_in};
 use crate::case::forms::explain_problem;
 use crate::case::suite;
 use crate::render::{self, Picture};
-use crate::report::page;
 use crate::{advise, checks, phase, report};
 use estimators::recipes::{controls, sampling};
-use lab::mutants::{self, About};
 use media::catalogue::{Page, PageList, suggestion};
 use theory::problems;
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]
 pub struct List {
-    /// One part of the catalogue; without it, all but the known bugs
+    /// One part of the catalogue; without it, all of it
     #[arg(value_parser = Kind)]
     what: Option<What>,
     /// Form of the rows on stdout
@@ -58,8 +54,6 @@ pub enum What {
     Cases,
     #[value(alias = "picture")]
     Pictures,
-    #[value(aliases = ["known-bug", "mutants", "mutant"])]
-    KnownBugs,
 }
 
 impl What {
@@ -99,14 +93,6 @@ impl TypedValueParser for Kind {
     }
 }
 
-/// One row: part of the catalogue, name and one sentence.
-#[derive(serde::Serialize)]
-struct Row {
-    part: String,
-    name: String,
-    summary: String,
-}
-
 /// Returns every page with the name of its part; pages that the program adds come last in theirs.
 pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
     let mut lists = built_in();
@@ -132,13 +118,7 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
 
 /// Prints the names with one sentence each.
 pub fn list(arguments: &List, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    let rows = rows(arguments.what, catalogue);
-    output::print(&match arguments.format {
-        Format::Table => table(&rows, console),
-        Format::Csv => csv(&rows)?,
-        Format::Json => serde_json::to_string_pretty(&rows)? + "\n",
-    })?;
-    Ok(0)
+    print_rows(&rows(arguments.what, catalogue), arguments.format, console)
 }
 
 /// Returns the rows of one part of the catalogue, or of all of it.
@@ -166,72 +146,18 @@ fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
             rows.push(Row { part: "pictures".into(), name: source.name, summary: title });
         }
     }
-    if what.as_deref() == Some("known-bugs") {
-        rows.extend(known_bugs().map(|(About { name, bug, .. }, _)| Row {
-            part: "known-bugs".into(),
-            name: name.into(),
-            summary: bug.into(),
-        }));
-    }
     rows
-}
-
-/// Returns the known bugs with the pages of their families.
-fn known_bugs() -> impl Iterator<Item = (About, Page)> {
-    let families = mutants::families().into_iter();
-    families.flat_map(|(page, abouts)| abouts.into_iter().map(move |about| (about, page)))
-}
-
-/// Returns the text about a known bug: what the code does, where it is caught, and the page of its family.
-fn known_bug(about: &About, page: &Page) -> String {
-    let About { bug, target, check, .. } = about;
-    let case = suite::find(target.case).and_then(|source| Case::read(&source).ok());
-    let estimator = case.map(|case| case.id(target.index, None).estimator.to_string());
-    let place =
-        format!("`{}` of the built-in case `{}`", estimator.unwrap_or_default(), target.case);
-    let page = page.text();
-    format!(
-        "Wrong code: {bug}.\n\n`trueflight self-test` draws it in the place of {place}, and requires that the check \
-         `{check}` fails it.\n\n{}",
-        page.trim_end()
-    )
-}
-
-fn table(rows: &[Row], console: &Console) -> String {
-    let colour = console.color.colours(std::io::stdout().is_terminal());
-    let widest = rows.iter().map(|row| row.name.len()).max().unwrap_or(0);
-    let mut text = String::new();
-    let mut part = "";
-    for row in rows {
-        if row.part != part {
-            let gap = if part.is_empty() { "" } else { "\n" };
-            let (bold, plain) = if colour { ("\x1b[1m", "\x1b[0m") } else { ("", "") };
-            let _ = writeln!(text, "{gap}{bold}{}{plain}", row.part);
-            part = &row.part;
-        }
-        let _ = writeln!(text, "  {:widest$}  {}", row.name, row.summary);
-    }
-    text
-}
-
-fn csv(rows: &[Row]) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 /// Arguments of `explain`.
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot, a known bug, or a part of the list, such as media
+    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot, or a part of the list, such as media
     #[arg(required = true, value_parser = Names::Pages, hide_possible_values = true)]
     name: Vec<String>,
 }
 
-/// Prints every page of a name, or the list of a part: on a terminal without the signs of Markdown and within its
-/// width, elsewhere as written.
+/// Prints every page of a name, or the list of a part.
 pub fn explain(
     arguments: &Explain,
     catalogue: &Catalogue,
@@ -245,21 +171,9 @@ pub fn explain(
         let Ok(what) = What::from_str(name, true) else {
             return Err(unknown(&written, name, catalogue));
         };
-        output::print(&table(&rows(Some(what), catalogue), console))?;
-        return Ok(0);
+        return print_rows(&rows(Some(what), catalogue), Format::Table, console);
     }
-    let pen = output::pen(console);
-    let is_shown = std::io::stdout().is_terminal() || pen.colour;
-    let text = |(part, text): (String, String)| {
-        if is_shown {
-            page::rendered(&format!("# {name} ({part})\n\n{text}\n"), pen)
-        } else {
-            format!("{name} ({part})\n\n{text}\n")
-        }
-    };
-    let texts: Vec<String> = found.into_iter().map(text).collect();
-    output::print(&texts.join("\n"))?;
-    Ok(0)
+    print_pages(name, found, console)
 }
 
 /// Returns the pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
@@ -277,8 +191,6 @@ fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
     for (part, source) in files {
         found.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
     }
-    let bugs = known_bugs().filter(|(about, _)| about.name == name);
-    found.extend(bugs.map(|(about, page)| ("known-bugs".to_owned(), known_bug(&about, &page))));
     found
 }
 
@@ -294,8 +206,7 @@ fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
     let sources = suite::suite().into_iter().chain(render::gallery()).map(|source| source.name);
     let kinds = What::value_variants().iter().map(|what| what.name());
     let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());
-    let bugs = known_bugs().map(|(about, _)| about.name.to_owned());
-    let mut names: Vec<String> = pages.chain(kinds).chain(sources).chain(bugs).collect();
+    let mut names: Vec<String> = pages.chain(kinds).chain(sources).collect();
     names.sort();
     names.dedup();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();

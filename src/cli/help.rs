@@ -22,17 +22,15 @@ const JUDGED: &str = "  0  the draws pass
   2  wrong usage, a mistake in a file, or a failure to read or write
   3  the draws do not decide it (--inconclusive changes the exit code)";
 
-/// Exit codes of commands that test the program itself.
-const TEST: &str = "  0  every bound holds, and every known bug is caught
-  1  a bound is broken, or a known bug is not caught
-  2  wrong usage, or a failure to write";
-
 /// Exit codes of other commands.
-const DONE: &str = "  0  done
+pub const DONE: &str = "  0  done
   2  wrong usage, a mistake in a file, or a failure to read or write";
 
 /// End of a help page: command, examples, exit codes, page of the manual.
-const PAGES: [(&str, &[&str], &str, &str); 17] = [
+pub type HelpEnd = (&'static str, &'static [&'static str], &'static str, &'static str);
+
+/// Ends of all help pages.
+const PAGES: [HelpEnd; 15] = [
     (
         "run",
         &[
@@ -101,13 +99,6 @@ const PAGES: [(&str, &[&str], &str, &str); 17] = [
     ),
     ("report", &["trueflight report results"], DONE, "docs/reports.md"),
     (
-        "self-test",
-        &["trueflight self-test", "trueflight self-test --long"],
-        TEST,
-        "docs/self-test.md",
-    ),
-    ("stress", &["trueflight stress --quick"], TEST, "docs/stress.md"),
-    (
         "list",
         &["trueflight list", "trueflight list estimators --format json"],
         DONE,
@@ -146,14 +137,7 @@ const PAGES: [(&str, &[&str], &str, &str); 17] = [
 
 /// Returns the command line with the ends of its help pages; options are in alphabetical order.
 pub fn command() -> Command {
-    let mut command = Cli::command();
-    for (name, examples, codes, manual) in PAGES {
-        let examples = examples.join("\n  ");
-        let end = format!("Examples:\n  {examples}\n\nExit codes:\n{codes}\n\nManual: {manual}");
-        command = command.mut_subcommand(name, |command| {
-            command.after_help(end).mut_args(|argument| argument.display_order(0))
-        });
-    }
+    let mut command = with_ends(Cli::command(), &PAGES);
     for name in ["run", "check", "merge"] {
         let renamed = [("time", "--budget"), ("json", "--record")].map(|(old, new)| {
             let suggest = UnknownArgumentValueParser::suggest_arg(new);
@@ -164,6 +148,17 @@ pub fn command() -> Command {
     command.after_help(
         "Manual: docs/index.md; `trueflight COMMAND --help` shows examples and exit codes",
     )
+}
+
+/// Adds the ends of the help pages of subcommands, and puts their options in alphabetical order.
+pub fn with_ends(command: Command, pages: &[HelpEnd]) -> Command {
+    pages.iter().fold(command, |command, (name, examples, codes, manual)| {
+        let examples = examples.join("\n  ");
+        let end = format!("Examples:\n  {examples}\n\nExit codes:\n{codes}\n\nManual: {manual}");
+        command.mut_subcommand(name, |command| {
+            command.after_help(end).mut_args(|argument| argument.display_order(0))
+        })
+    })
 }
 
 /// Text argument that shells complete by names of the catalogue; any other text is valid, too.

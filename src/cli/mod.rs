@@ -11,25 +11,27 @@
 //! | 2 | usage, a bad case file, input or output |
 //! | 3 | nothing fails, but something is inconclusive; `--inconclusive fail` makes it 1, `pass` 0 |
 
+#![allow(clippy::missing_errors_doc)] // errors are messages to the person at the console
+
 mod advise;
 mod baseline;
 mod bench;
 mod catalogue;
 mod export;
-mod help;
+pub mod help;
 mod inspect;
 mod journal;
 mod judge;
-pub mod lab;
+pub mod listing;
 mod merge;
-mod numbers;
-mod output;
+pub mod numbers;
+pub mod output;
 mod predict;
 pub mod ranks;
 mod render;
 mod reports;
 mod run;
-mod selection;
+pub mod selection;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -62,7 +64,7 @@ pub struct Console {
     color: output::When,
     /// No progress and no table, only errors
     #[arg(long, short, global = true)]
-    quiet: bool,
+    pub quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -85,10 +87,6 @@ enum Command {
     Render(render::Arguments),
     /// Write the page report.html of a stored run
     Report(merge::Report),
-    /// Test the gate itself: its rates of errors, and whether it catches known bugs
-    SelfTest(lab::SelfTestArguments),
-    /// Compare all numerical routines with 32-digit references at extreme parameters
-    Stress(lab::Stress),
     /// List media, estimators, problems, checks, cases and more
     List(catalogue::List),
     /// Print the manual page of a medium, an estimator, a check, …
@@ -161,8 +159,6 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
         Command::Plan(arguments) => predict::plan(arguments, catalogue, console),
         Command::Render(arguments) => render::main(arguments, catalogue, console),
         Command::Report(arguments) => merge::report(arguments, console),
-        Command::SelfTest(arguments) => lab::self_test(arguments, console),
-        Command::Stress(arguments) => lab::stress(arguments, console),
         Command::List(arguments) => catalogue::list(arguments, catalogue, console),
         Command::Explain(arguments) => catalogue::explain(arguments, catalogue, console),
         Command::Inspect(arguments) => inspect::main(arguments, console),

@@ -92,6 +92,7 @@ impl Looks {
     }
 
     /// Returns these options with the budget of others.
+    #[must_use]
     pub fn with_budget_of(self, other: &Self) -> Self {
         Self { budget: other.budget, ..self }
     }
@@ -171,6 +172,7 @@ impl Selection {
     }
 
     /// Returns these options with the number of threads of others.
+    #[must_use]
     pub fn on_threads_of(self, other: &Self) -> Self {
         Self { threads: other.threads, ..self }
     }

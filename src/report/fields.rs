@@ -251,6 +251,8 @@ pub struct Shown {
 
 /// Lists columns by the names of their fields, each with its rank where that is not 0, as in
 /// `shown!(Line: "mean" 6, "z_mean" 1, "truth")`. An unknown name is an error of the compiler.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! shown {
     ($row:ty: $($name:literal $($rank:literal)?),*) => {
         const { &[$($crate::report::fields::Shown {
@@ -259,10 +261,10 @@ macro_rules! shown {
         }),*] }
     };
 }
-pub(in crate::report) use shown;
+pub use shown;
 
 /// Returns the place of a field in its table.
-pub(in crate::report) const fn place<T: Table>(name: &str) -> usize {
+pub const fn place<T: Table>(name: &str) -> usize {
     let mut place = 0;
     while !is_same(name, T::NAMES[place]) {
         place += 1;
@@ -302,6 +304,8 @@ pub fn judged<T: Table>(
 
 /// Lists fields, as in `"seed": "Seed of the run" = |row| row.seed;`, or with heading, unit and form, as in
 /// `"swept" ["σ̂", "1/length", Short(4)]: "Swept value" = |row| row.swept();`.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! fields {
     ($($name:literal $([$head:literal, $unit:literal, $print:expr])? $(: $meaning:literal)? = |$row:pat_param| $cell:expr;)*) => {{
         #[allow(unused_imports)]
@@ -326,9 +330,11 @@ macro_rules! fields {
         }
     };
 }
-pub(in crate::report) use fields;
+pub use fields;
 
 /// Makes a type of rows a [`Table`] of fields: those of files, then those of screens and pages only.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! table {
     (impl $(<$life:lifetime>)? for $row:ty {
         $($name:literal $([$($form:tt)*])? $(: $meaning:literal)? = |$arg:pat_param| $cell:expr;)*
@@ -348,7 +354,7 @@ macro_rules! table {
         }
     };
 }
-pub(in crate::report) use table;
+pub use table;
 
 /// Returns rows as CSV, with a first line of names; `name` is the file in an error.
 pub fn csv<T>(

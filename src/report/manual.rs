@@ -8,14 +8,10 @@ use crate::report::fields::{Table, markdown};
 use crate::report::run::summary_csv::Line;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 use crate::report::run::{case_csv, checks_csv};
-use crate::report::{self, advise, bench, render};
-use lab::calibration::Rate;
-use lab::mutants::Caught;
-use lab::streams::StreamVerdicts;
-use lab::stress;
+use crate::report::{advise, bench, render};
 
-/// Returns the page as Markdown.
-pub fn columns() -> String {
+/// Returns the page as Markdown. Sections of tables that other programs write come last, each with its title.
+pub fn columns(others: &[(&str, String)]) -> String {
     let mut text = String::from(
         "# Columns\n\nReference for the columns of all tables: the name in CSV and JSON, the heading on the console and on pages, the unit, the \
          meaning. An empty field or `null` is unknown. This page is generated: `UPDATE_GOLDEN=1 cargo test --release --test it golden::`.\n\n\
@@ -24,33 +20,32 @@ pub fn columns() -> String {
     for known in VERDICTS {
         let _ = writeln!(text, "| {} | {} | {} |", known.verdict.word(), known.mark, known.meaning);
     }
-    let mut add = |title: &str, table: String| {
+    let mut add = |title: &str, table: &str| {
         let _ = write!(text, "\n## {title}\n\n{table}");
     };
-    add("Rows of a run: `summary.csv`, `CASE.csv`, `--format csv|json`", of_files::<Line>());
-    add("On consoles and pages only", markdown(&Line::fields()[Line::FILES..]));
-    add("Error bars: `CASE.csv` only", markdown(&case_csv::deviations()));
-    add("Predicted curves of a sweep: `CASE.theory.csv`", of_files::<case_csv::Predicted>());
-    add("The ray of a case: `CASE.anatomy.csv`", of_files::<case_csv::Place>());
-    add("Findings of checks: `checks.csv`", of_files::<checks_csv::FindingRow>());
-    add("Changes since a stored run or bench: `changes.csv`", of_files::<Difference>());
-    add("Times: `bench.csv`, `bench --format csv|json`", of_files::<bench::tables::Joined>());
-    add("Error against time: `CASE.error.csv`", of_files::<bench::tables::Priced>());
-    add("Advice: `advise.csv`, `advise --format csv|json`", of_files::<advise::Joined>());
+    add("Rows of a run: `summary.csv`, `CASE.csv`, `--format csv|json`", &of_files::<Line>());
+    add("On consoles and pages only", &markdown(&Line::fields()[Line::FILES..]));
+    add("Error bars: `CASE.csv` only", &markdown(&case_csv::deviations()));
+    add("Predicted curves of a sweep: `CASE.theory.csv`", &of_files::<case_csv::Predicted>());
+    add("The ray of a case: `CASE.anatomy.csv`", &of_files::<case_csv::Place>());
+    add("Findings of checks: `checks.csv`", &of_files::<checks_csv::FindingRow>());
+    add("Changes since a stored run or bench: `changes.csv`", &of_files::<Difference>());
+    add("Times: `bench.csv`, `bench --format csv|json`", &of_files::<bench::tables::Joined>());
+    add("Error against time: `CASE.error.csv`", &of_files::<bench::tables::Priced>());
+    add("Advice: `advise.csv`, `advise --format csv|json`", &of_files::<advise::Joined>());
     add(
         "Images of a renderer: `judgement.json`, `judge --images --format json`; `order.lag` is `lag` in the object `order`",
-        of_files::<&Judgement>(),
+        &of_files::<&Judgement>(),
     );
-    add("Tiles of images: `tiles.csv` of `judge --images`", of_files::<&Tile>());
-    add("Images: `gallery.csv` of `render`", of_files::<render::Joined>());
-    add("Promised rates: `self-test/calibration.csv`", of_files::<&Rate>());
-    add("Foreign streams: `self-test/foreign-streams.csv`", of_files::<&StreamVerdicts>());
-    add("Known bugs: `self-test/mutants.csv`", of_files::<&Caught>());
-    add("Bounds: `stress/stress.csv`", of_files::<&stress::Row>());
-    add("Single precision: `stress/single-precision.csv`", of_files::<report::stress::Measured>());
+    add("Tiles of images: `tiles.csv` of `judge --images`", &of_files::<&Tile>());
+    add("Images: `gallery.csv` of `render`", &of_files::<render::Joined>());
+    for (title, table) in others {
+        add(title, table);
+    }
     text + "\nA z in parentheses: " + NOT_NORMAL.trim_start_matches("(z): ") + ".\n"
 }
 
-fn of_files<T: Table>() -> String {
+/// Returns the columns of a table of files as Markdown.
+pub fn of_files<T: Table>() -> String {
     markdown(&T::of_files())
 }

@@ -20,8 +20,6 @@ pub mod page;
 pub mod plots;
 pub mod render;
 pub mod run;
-pub mod self_test;
-pub mod stress;
 
 use std::fs;
 use std::io;

@@ -183,13 +183,9 @@ fn commands_that_do_not_finish_leave_no_folder() {
         assert_eq!(code(&place.run(&format!("{failing} --out found"))), 2, "{failing}");
         assert!(!place.path().join("found").exists(), "{failing}");
     }
-    for long in [
-        "advise rays.toml --cost lookup=1us",
-        "bench case.toml --draws 100000000",
-        "render",
-        "self-test --long",
-        "stress",
-    ] {
+    for long in
+        ["advise rays.toml --cost lookup=1us", "bench case.toml --draws 100000000", "render"]
+    {
         let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("trueflight"));
         let words = long.split(' ').chain(["--out", "found", "--quiet"]);
         let mut run = command.args(words).current_dir(place.path()).spawn().expect("it starts");

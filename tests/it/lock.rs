@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use crate::common::{LOCKED_DRAWS, none, shipped_draws, shipped_record};
+use lab::report::self_test;
+use lab::self_test::streams;
+use lab::self_test::{SelfTest, calibration, mutation};
 use trueflight::catalogue::Page;
 use trueflight::estimators::{self, FormCatalogue};
-use trueflight::lab::streams;
 use trueflight::report::run::{checks_csv, summary_csv};
-use trueflight::report::self_test;
-use trueflight::self_test::{SelfTest, calibration, mutation};
 
 /// Columns that identify a row of a case.
 const LABELS: [&str; 5] = ["estimator", "sampling", "control", "swept", "channel"];

@@ -23,6 +23,7 @@ mod grids;
 mod html;
 mod judge;
 mod junit;
+mod lab;
 mod lengths;
 mod lit_rod;
 mod lit_slab;

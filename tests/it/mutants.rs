@@ -5,11 +5,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::common::none;
+use lab::mutants::{self, About, streams};
+use lab::self_test::mutation;
 use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::checks;
-use trueflight::mutants::{self, About, streams};
-use trueflight::self_test::mutation;
 
 /// Lists the faults of the mutants of some names.
 fn escaped(is_wanted: &dyn Fn(&str) -> bool) -> Vec<String> {

@@ -1,9 +1,8 @@
 //! Single precision beside double: doubles find the truth, and single precision fails where it should.
 
-use trueflight::cli::lab::prepared;
-use trueflight::stress::narrow::scene::Scene;
-use trueflight::stress::narrow::walks::Entry;
-use trueflight::stress::narrow::{Along, FAMILIES, Point, compare};
+use lab::stress::narrow::scene::Scene;
+use lab::stress::narrow::walks::Entry;
+use lab::stress::narrow::{Along, FAMILIES, Point, compare};
 
 fn entries() -> impl Iterator<Item = &'static Entry> {
     FAMILIES.iter().flat_map(|family| family.entries)
@@ -11,7 +10,7 @@ fn entries() -> impl Iterator<Item = &'static Entry> {
 
 fn at(entry: &Entry, [depth, collisions, from]: [f64; 3], budget: f64) -> Point {
     let scene = Scene { depth, collisions, from };
-    compare(entry, (&scene, prepared), (7, budget)).expect("a setup")
+    compare(entry, &scene, (7, budget)).expect("a setup")
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use trueflight::lab::h_function::h_function;
+use lab::h_function::h_function;
 use trueflight::numeric::Known;
 use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;

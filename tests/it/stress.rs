@@ -1,49 +1,46 @@
-//! `trueflight stress`: the short form holds, has the same numbers on any number of threads, and fails if a bound is
+//! `trueflight-lab stress`: the short form holds, has the same numbers on any number of threads, and fails if a bound is
 //! broken.
 
-use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use lab::report::stress as page;
+use lab::stress::{Effort, Measure, PAGES, Row, Run, Stress, narrow};
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::report::layout::Pen;
-use trueflight::report::stress as page;
-use trueflight::stress::{Effort, Measure, PAGES, Row, Run, Stress, narrow};
 
-fn stress(out: &Path, threads: &str) -> (Option<i32>, String) {
-    let mut command = Command::cargo_bin("trueflight").expect("built");
-    let arguments = ["stress", "--quick", "--threads", threads, "--out"];
-    let output = command.env("COLUMNS", "160").args(arguments).arg(out).output().expect("runs");
-    (output.status.code(), String::from_utf8(output.stdout).expect("text"))
+/// Runs the short form on a number of threads.
+fn short_form(threads: usize) -> Stress {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let run = Run { effort: Effort::Quick, seed: 1 };
+    pool.install(|| lab::stress::all(run, &|_| {}))
+}
+
+/// Returns the bytes of a file of the result.
+fn file(found: &Stress, name: &str) -> Vec<u8> {
+    let mut files = page::artifacts(found).expect("renders").into_iter();
+    let file = files.find(|file| file.path == Path::new("stress").join(name));
+    file.unwrap_or_else(|| panic!("no {name}")).bytes
 }
 
 #[test]
 fn every_bound_holds_in_the_short_form() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (code, text) = stress(folder.path(), "3");
-    assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("bounds hold"), "{text}");
-    let [csv, json, ..] = FILES.map(|name| file(folder.path(), name));
+    let found = short_form(3);
+    let text = page::table(&found, Pen { width: 160, colour: false });
+    assert!(found.holds() && text.contains("bounds hold"), "{text}");
+    let [csv, json, ..] = FILES.map(|name| file(&found, name));
     let csv = String::from_utf8(csv).expect("text");
     assert!(csv.lines().count() > 3 * PAGES.len(), "{csv}");
     let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
     assert_eq!(json["holds"], true);
 }
 
-/// Files that it writes.
+/// Files that the command writes.
 const FILES: [&str; 4] =
     ["stress.csv", "stress.json", "single-precision.csv", "single-precision.svg"];
-
-fn file(out: &Path, name: &str) -> Vec<u8> {
-    let bytes = fs::read(out.join("stress").join(name));
-    let bytes = bytes.unwrap_or_else(|error| panic!("{name}: {error}"));
-    assert!(!bytes.is_empty());
-    bytes
-}
 
 #[test]
 fn numbers_do_not_depend_on_the_threads() {
@@ -62,18 +59,12 @@ fn numbers_do_not_depend_on_the_threads() {
 #[test]
 #[ignore = "long: the short form on one thread and on three, 60 s of a core"]
 fn no_file_depends_on_the_threads() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let outs = ["1", "3"].map(|threads| (folder.path().join(threads), threads));
-    for (out, threads) in &outs {
-        assert_eq!(stress(out, threads).0, Some(0), "{threads} threads");
-    }
+    let [one, three] = [1, 3].map(short_form);
     for name in FILES {
-        let [one, three] = outs.each_ref().map(|(out, _)| file(out, name));
-        assert!(one == three, "{name} depends on the threads");
+        assert!(file(&one, name) == file(&three, name), "{name} depends on the threads");
     }
     // The page has times, too.
-    let (out, _) = &outs[0];
-    assert!(String::from_utf8_lossy(&file(out, "report.html")).contains("bounds hold</h1>"));
+    assert!(String::from_utf8_lossy(&file(&one, "report.html")).contains("bounds hold</h1>"));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Likely causes of a failure, given its pattern.
 //!
 //! A pattern says which checks failed, and on which side. The causes of a pattern are the frequent kinds among the
-//! known bugs (`trueflight self-test`) with this pattern. They are likely, not certain.
+//! known bugs (`trueflight-lab self-test`) with this pattern. They are likely, not certain.
 
 /// The side on which a quantity deviates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -212,7 +212,7 @@ kinds! {
 }
 
 /// Patterns of failures and the kinds of bugs that cause them. The first line that applies to a pattern counts. Its
-/// causes are the kinds of most known bugs with that pattern; `tests/it/causes.rs` compares the table with all of
+/// causes are the kinds of most known bugs with that pattern; `tests/it/newcomers/causes.rs` compares the table with all of
 /// them.
 pub static TABLE: &[Line] = &[
     Line {

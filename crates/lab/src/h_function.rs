@@ -60,37 +60,3 @@ fn near_right_angle(albedo: f64, cosine: f64, psi: f64) -> f64 {
     (-albedo * (FRAC_PI_2 - psi) * psi.tan()).ln_1p()
         / (sine * sine + cosine * cosine * along * along)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn without_scattering_it_is_one() {
-        assert!((h_function(0.0, 0.7) - 1.0).abs() < 1e-15);
-        assert_eq!(h_function(0.9, 0.0), 1.0);
-    }
-
-    #[test]
-    fn its_integral_is_known() {
-        // ½ a ∫ H dμ = 1 − √(1 − a) (Chandrasekhar, chapter 5, theorem 1).
-        let rule = GaussLegendre::new(40);
-        for albedo in [0.3, 0.9, 1.0] {
-            let integral = rule.integrate(0.0, 1.0, |x| 2.0 * x * h_function(albedo, x * x));
-            let exact = 1.0 - f64::sqrt(1.0 - albedo);
-            assert!((0.5 * albedo * integral - exact).abs() < 1e-10, "a = {albedo}: {integral}");
-        }
-    }
-
-    #[test]
-    fn it_solves_its_equation() {
-        let rule = GaussLegendre::new(40);
-        for (albedo, cosine) in [(0.5, 0.3), (1.0, 1.0)] {
-            let here = h_function(albedo, cosine);
-            let integral = rule
-                .integrate(0.0, 1.0, |x| 2.0 * x * h_function(albedo, x * x) / (cosine + x * x));
-            let there = 1.0 + 0.5 * albedo * cosine * here * integral;
-            assert!((here - there).abs() < 1e-10, "{here} {there}");
-        }
-    }
-}

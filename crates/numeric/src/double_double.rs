@@ -8,7 +8,7 @@
 //! renormalised: `+ − ×` to 2⁻¹⁰⁴, `÷` and `√` to 2⁻¹⁰², relative. [`DoubleDouble::exp`] halves its
 //! argument nine times before a Taylor series of 12 terms, [`DoubleDouble::ln`] is one Newton step from the
 //! platform's; both are good to 1e-30 relative to `1 + |x|`. Nothing that a draw computes is made of these:
-//! they are what `trueflight stress` measures doubles against.
+//! they are what `trueflight-lab stress` measures doubles against.
 //!
 //! Sources: T. J. Dekker, *A Floating-Point Technique for Extending the Available Precision*, Numerische
 //! Mathematik 18 (1971); Y. Hida, X. S. Li, D. H. Bailey, *Algorithms for Quad-DoubleDouble Precision

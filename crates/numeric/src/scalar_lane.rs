@@ -9,7 +9,7 @@
 //! rounded to 24 bits. Logarithm, exponential, sine and cosine are the true values rounded once, better
 //! than most hardware has them: what single precision costs here is the least it costs anywhere. Tables,
 //! lattice hashes and list positions are as in doubles, and their entries are rounded. No draw of a run is
-//! made of these; `trueflight stress` compares both.
+//! made of these; `trueflight-lab stress` compares both.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

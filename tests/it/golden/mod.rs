@@ -92,7 +92,7 @@ fn files() {
 
 #[test]
 fn the_manual_has_every_column() {
-    compare(Path::new("../../docs/columns.md"), trueflight::report::manual::columns().as_bytes());
+    compare(Path::new("../../docs/columns.md"), lab::report::columns().as_bytes());
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Verdicts need grounds: missing evidence is no reason to fail.
 
+use lab::self_test::streams::{self, CLAIMS, LAWS, Law};
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::estimators::DrawBuffer;
 use trueflight::judge::{CheckedClaim, Claim, Options, ROUNDING};
-use trueflight::lab::streams::{self, CLAIMS, LAWS, Law};
 use trueflight::plan::{self, BLOCK, Plan};
 use trueflight::record::Verdict;
 

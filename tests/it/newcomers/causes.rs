@@ -7,15 +7,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::common;
+use lab::mutants::{self, streams};
+use lab::self_test;
+use lab::self_test::mutation::{self, Walk};
 use trueflight::draw::run;
 use trueflight::gate::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
-use trueflight::mutants::{self, streams};
 use trueflight::plan::Plan;
 use trueflight::record::build;
 use trueflight::record::{CaseRecord, Verdict};
 use trueflight::report::run::failures;
-use trueflight::self_test;
-use trueflight::self_test::mutation::{self, Walk};
 
 /// Smallest share of the known bugs of a kind that their line names.
 const SHARE: f64 = 0.9;

@@ -2,10 +2,9 @@
 
 use trueflight::case::Case;
 use trueflight::case::suite;
-use trueflight::mutants;
 use trueflight::plan::Plan;
 
-use super::{Listed, listed, stdout, trueflight};
+use super::{listed, stdout, trueflight};
 use crate::common::{case, none, options, source};
 
 /// Returns the blocks of a case file in a page.
@@ -132,26 +131,5 @@ fn names_and_kinds_may_be_written_as_people_write_them() {
     ] {
         assert_eq!(stdout(&["explain", kind]), stdout(&["list", part]));
         assert_eq!(stdout(&["list", &kind.to_lowercase()]), stdout(&["list", part]));
-    }
-}
-
-#[test]
-fn every_known_bug_is_listed_and_explained() {
-    let listed = stdout(&["list", "known-bugs", "--format", "json"]);
-    let listed: Vec<Listed> = serde_json::from_str(&listed).expect("rows");
-    let all = mutants::families().into_iter().flat_map(|(_, abouts)| abouts);
-    let all: Vec<(&str, &str)> = all.map(|about| (about.name, about.bug)).collect();
-    let shown: Vec<(&str, &str)> =
-        listed.iter().map(|row| (row.name.as_str(), row.summary.as_str())).collect();
-    assert_eq!(shown, all);
-    let page = stdout(&["explain", "control-twice"]);
-    for said in [
-        "T_c is multiplied in twice",
-        "`residual-ratio` of the built-in case `transmittance/known-bugs`",
-        "the check `mean`",
-        "T_c = exp(−∫₀^S σ_c)",
-        "Mitsuba 3, issue 1387",
-    ] {
-        assert!(page.contains(said), "{said}: {page}");
     }
 }

@@ -19,7 +19,7 @@
 //!
 //! It takes σ̂, which must be a majorant. As printed, Algorithm 2 of the source averages over both samples, which is
 //! right only where one of them is chosen, and Algorithm 1 does not divide hits by `p_uni + p_nee`: both are
-//! among the known bugs of `trueflight self-test`.
+//! among the known bugs of `trueflight-lab self-test`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.

@@ -1,7 +1,7 @@
 //! Known bugs: an estimator with one mistake in it, for a gate that must not let it pass.
 //!
 //! A test that has never failed proves little. A mutant names one experiment of the built-in suite
-//! and the check that must catch it there; `trueflight self-test` draws it in the place
+//! and the check that must catch it there; `trueflight-lab self-test` draws it in the place
 //! of the correct estimator, against its prediction.
 //!
 //! A mutant is a walk of the estimators with other steps, other random numbers, or another setup. Without its bug

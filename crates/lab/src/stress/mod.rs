@@ -64,14 +64,14 @@ pub mod moments;
 pub mod narrow;
 mod nodes;
 mod ordinates;
-mod parameters;
+pub mod parameters;
 mod peierls;
 mod rays;
 pub mod rods;
 pub mod row;
 pub mod scattered;
 pub mod scattering;
-mod shared_walk;
+pub mod shared_walk;
 pub mod slabs;
 pub mod spectral;
 pub mod table;
@@ -149,8 +149,8 @@ pages! {
     spectral,
 }
 
-/// Runs the stress test, given the setups of cases; `done` receives the name of each page that is finished.
-pub fn all(run: Run, prepare: narrow::Prepare, done: &(dyn Fn(&str) + Sync)) -> Stress {
+/// Runs the stress test; `done` receives the name of each page that is finished.
+pub fn all(run: Run, done: &(dyn Fn(&str) + Sync)) -> Stress {
     let begin = std::time::Instant::now();
     // At once: the last trials of a page alone would leave threads idle.
     let (rows, narrow) = rayon::join(
@@ -162,7 +162,7 @@ pub fn all(run: Run, prepare: narrow::Prepare, done: &(dyn Fn(&str) + Sync)) -> 
             })
         },
         || {
-            let narrow = narrow::measure(run, prepare);
+            let narrow = narrow::measure(run);
             done("narrow");
             narrow
         },

@@ -96,7 +96,7 @@ impl Row {
     }
 
     /// Adds an error of a trial.
-    pub(super) fn see(&mut self, error: f64, trial: u32, place: impl FnOnce() -> String) {
+    pub fn see(&mut self, error: f64, trial: u32, place: impl FnOnce() -> String) {
         self.add(1, error, || (trial, place()));
     }
 
@@ -109,7 +109,7 @@ impl Row {
     }
 
     /// Adds later trials of this row.
-    pub(super) fn merge(&mut self, later: Self) {
+    pub fn merge(&mut self, later: Self) {
         if self.skipped == 0 {
             self.first_skipped = later.first_skipped;
         }
@@ -150,31 +150,5 @@ impl Row {
     /// Returns true if more trials were skipped than compared: such a row does not test its range.
     pub fn is_mostly_skipped(&self) -> bool {
         self.skipped > self.trials
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn row(measure: Measure, errors: &[f64]) -> Row {
-        let mut row = Row::new("q", "r", measure, 0.0);
-        errors.iter().zip(0..).for_each(|(&error, trial)| row.see(error, trial, String::new));
-        row
-    }
-
-    #[test]
-    fn the_worst_error_is_kept_and_nan_is_the_worst() {
-        let mut all = row(Measure::Absolute, &[1e-12, 1e-10, 1e-11]);
-        assert_eq!((all.worst, all.trial, all.trials), (1e-10, 1, 3));
-        all.merge(row(Measure::Absolute, &[f64::NAN, 1.0]));
-        assert!(all.worst.is_nan() && all.trial == 0 && all.trials == 5);
-    }
-
-    #[test]
-    fn wrong_answers_are_counted_and_the_first_is_kept() {
-        let mut all = row(Measure::Count, &[0.0, 0.0, 1.0]);
-        all.merge(row(Measure::Count, &[1.0, 1.0]));
-        assert_eq!((all.worst, all.trial), (3.0, 2));
     }
 }

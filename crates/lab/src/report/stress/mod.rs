@@ -7,13 +7,13 @@ use std::fmt::Write;
 
 use serde_json::json;
 
-use crate::report::fields::{self, Shown, Table, judged, object, place, shown, table};
-use crate::report::layout::{Column, Field, Grid, Paint, Pen};
-use crate::report::plots;
-use crate::report::{Artifact, ReportError};
 use crate::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::stress::{Row, Stress};
 use numeric::digits::{number, short};
+use trueflight::report::fields::{self, Shown, Table, judged, object, place, shown, table};
+use trueflight::report::layout::{Column, Field, Grid, Paint, Pen};
+use trueflight::report::plots;
+use trueflight::report::{Artifact, ReportError};
 
 /// Folder below the results.
 const FOLDER: &str = "stress";
@@ -123,10 +123,14 @@ table! {
 }
 
 /// Point of a curve of single precision.
-pub type Measured<'a> = (&'a Curve, &'a Point);
+#[derive(Debug, Clone, Copy)]
+pub struct Measured<'a> {
+    curve: &'a Curve,
+    point: &'a Point,
+}
 
 fn points(curve: &Curve) -> impl Iterator<Item = Measured<'_>> {
-    curve.points.iter().map(move |point| (curve, point))
+    curve.points.iter().map(move |point| Measured { curve, point })
 }
 
 /// Number of fields of a point that all points of its curve share.
@@ -134,15 +138,15 @@ const OF_CURVES: usize = place::<Measured>("x");
 
 table! {
     impl<'a> for Measured<'a> {
-        "family": "Family of estimators" = |(curve, _)| curve.family;
-        "estimator": "Estimator" = |(curve, _)| curve.estimator;
-        "along": "Quantity that is varied" = |(curve, _)| curve.along.word();
-        "x": "Its value" = |(_, point)| point.x;
-        "walks": "Number of walks" = |(_, point)| point.walks;
-        "bias": "Bias of single precision, relative to the mean" = |(_, point)| point.bias;
-        "bias_error": "Its standard error" = |(_, point)| point.error;
-        "noise_1e8": "Relative standard error of 1e8 draws" = |(_, point)| point.noise;
-        "exceeds": "Whether the bias exceeds the noise" = |(_, point)| point.exceeds();
+        "family": "Family of estimators" = |Measured { curve, .. }| curve.family;
+        "estimator": "Estimator" = |Measured { curve, .. }| curve.estimator;
+        "along": "Quantity that is varied" = |Measured { curve, .. }| curve.along.word();
+        "x": "Its value" = |Measured { point, .. }| point.x;
+        "walks": "Number of walks" = |Measured { point, .. }| point.walks;
+        "bias": "Bias of single precision, relative to the mean" = |Measured { point, .. }| point.bias;
+        "bias_error": "Its standard error" = |Measured { point, .. }| point.error;
+        "noise_1e8": "Relative standard error of 1e8 draws" = |Measured { point, .. }| point.noise;
+        "exceeds": "Whether the bias exceeds the noise" = |Measured { point, .. }| point.exceeds();
     }
 }
 

@@ -4,18 +4,18 @@
 //! bugs of an experiment are drawn in its place one after another, against the same prediction. A control that makes the
 //! same draws as the estimator, bit for bit, shares the estimator's verdict.
 
-use crate::case::{Case, CaseError, suite};
-use crate::draw::run;
-use crate::plan::options::{Amount, Options};
-use crate::plan::{BLOCK, Plan, Planned};
-use crate::record::{Finding, Verdict, evaluate};
+use crate::mutants::{self, About, Caught, StreamMutant, Target, streams};
 use estimators::{DrawBuffer, Experiment, Refusal};
 use gate::causes::Pattern;
-use lab::mutants::{self, About, Caught, StreamMutant, Target, streams};
 use numeric::rng::Address;
 use theory::parallel;
+use trueflight::case::{Case, CaseError, suite};
+use trueflight::draw::run;
+use trueflight::plan::options::{Amount, Options};
+use trueflight::plan::{BLOCK, Plan, Planned};
+use trueflight::record::{Finding, Verdict, evaluate};
 
-pub use lab::mutants::Walk;
+pub use crate::mutants::Walk;
 
 /// Draws and judges all mutants and their controls.
 ///

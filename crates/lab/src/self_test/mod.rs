@@ -1,16 +1,16 @@
 //! Tests of the gate on the experiments of cases: does it keep its promises on correct estimators, and does it detect
 //! known bugs?
 //!
-//! [`calibration`] runs correct experiments many times; [`mutation`] draws every known bug in place of its correct
-//! estimator, and looks whether its check detects it. The promises, the bugs, and correct foreign draws of hard
-//! distributions are in [`lab`], which needs no cases.
+//! [`calibration`] runs correct experiments many times. [`mutation`] draws every known bug in the place of its correct
+//! estimator, and tests whether its check detects it. [`streams`] are correct foreign draws of difficult distributions.
 
 pub mod calibration;
 pub mod mutation;
+pub mod streams;
 
-use lab::calibration::Calibration;
-use lab::mutants::Caught;
-use lab::streams::StreamVerdicts;
+use crate::mutants::Caught;
+use crate::self_test::calibration::Calibration;
+use crate::self_test::streams::StreamVerdicts;
 
 /// Results of a self-test.
 #[derive(Debug, Clone)]

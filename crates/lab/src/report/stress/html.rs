@@ -2,12 +2,12 @@
 
 use maud::html;
 
-use crate::report::ReportError;
-use crate::report::fields::{Shown, shown};
-use crate::report::html::drawing::{definitions, plot};
-use crate::report::html::listing::{page, section};
 use crate::stress::{Row, Stress};
 use numeric::digits::time;
+use trueflight::report::ReportError;
+use trueflight::report::fields::{Shown, shown};
+use trueflight::report::html::drawing::{definitions, plot};
+use trueflight::report::html::listing::{page, section};
 
 /// Columns of the page, beside the result.
 const COLUMNS: &[Shown] = shown!(&Row:

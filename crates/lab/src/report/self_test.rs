@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use crate::report::fields::{self, Shown, Table, grid, judged, shown, table};
-use crate::report::layout::{Field, Paint, Pen};
-use crate::report::lists::joined;
-use crate::report::{Artifact, ReportError};
+use crate::mutants::Caught;
 use crate::self_test::SelfTest;
-use lab::calibration::{Calibration, Rate};
-use lab::mutants::Caught;
-use lab::streams::{ALPHA, StreamVerdicts};
+use crate::self_test::calibration::{Calibration, Rate};
+use crate::self_test::streams::{ALPHA, StreamVerdicts};
 use numeric::digits::{count, short};
+use trueflight::report::fields::{self, Shown, Table, grid, judged, shown, table};
+use trueflight::report::layout::{Field, Paint, Pen};
+use trueflight::report::lists::joined;
+use trueflight::report::{Artifact, ReportError};
 
 /// Words for a promise.
 const KEPT: [&str; 2] = ["kept", "BROKEN"];

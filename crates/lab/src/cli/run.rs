@@ -1,21 +1,16 @@
-//! `trueflight stress` and `trueflight self-test`: the limits of doubles, and the test of the gate itself.
+//! `trueflight-lab stress` and `trueflight-lab self-test`: the limits of doubles, and the test of the gate itself.
 
-use std::any::Any;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use numeric::digits::counted;
-use numeric::rng::Address;
 
-use super::selection::{Seed, Threads};
-use super::{Console, numbers, output};
-use crate::case::{Case, Source};
 use crate::report::{self_test, stress as page};
-use crate::self_test::{SelfTest, calibration, mutation};
+use crate::self_test::{SelfTest, calibration, mutation, streams};
 use crate::stress::{self, Effort, PAGES, Run};
-use lab::streams;
-use theory::Prediction;
+use numeric::digits::counted;
+use trueflight::cli::selection::{Seed, Threads};
+use trueflight::cli::{Console, numbers, output};
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -44,7 +39,7 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
         let (parts, seed) = (PAGES.len() + 1, run.seed);
         output::print(&format!("stress: {parts} parts, {form}, seed {seed}\n"))?;
     }
-    let found = arguments.threads.install(|| Ok(stress::all(run, prepared, &|_| bar.inc(1))))?;
+    let found = arguments.threads.install(|| Ok(stress::all(run, &|_| bar.inc(1))))?;
     bar.finish_and_clear();
     let written = output::write(&page::artifacts(&found)?, &arguments.out);
     if !console.quiet {
@@ -55,16 +50,6 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
         output::print(&output::report_in(&arguments.out.join("stress")))?;
     }
     Ok(u8::from(!found.holds()))
-}
-
-/// Returns the setup of a case with one estimator, and the prediction for it; `None` where it is refused.
-pub fn prepared(text: &str) -> Option<(Box<dyn Any>, Prediction)> {
-    /// Address of pilot draws, where theory has no variance.
-    const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
-    let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
-    let case = Case::read(&source).ok()?;
-    let at = case.at(None).ok()?;
-    Some((at.setup(0, NOWHERE).ok()?, at.predict(0, None, NOWHERE)?))
 }
 
 /// Number of independent runs of the long calibration.

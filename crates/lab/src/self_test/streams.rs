@@ -296,24 +296,3 @@ fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerd
     });
     verdicts.collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_promise_is_broken_by_more_fails_than_chance_allows() {
-        let of = |failed| StreamVerdicts {
-            law: String::new(),
-            known: String::new(),
-            streams: 1000,
-            passed: 1000 - failed,
-            failed,
-            inconclusive: 0,
-            reason: String::new(),
-        };
-        // One is expected; P(12 or more) of a Poisson number of mean 1 is 8e-10, P(5 or more) 4e-3.
-        assert!(of(0).is_kept() && of(4).is_kept());
-        assert!(!of(12).is_kept() && !of(1000).is_kept());
-    }
-}

@@ -3,14 +3,14 @@
 
 use plotters::style::Color;
 
-use crate::report::ReportError;
-use crate::report::plots::figure::{Figure, LEFT};
-use crate::report::plots::font::fit;
-use crate::report::plots::legend::{self, Entry, LINE};
-use crate::report::plots::sheet::Align;
-use crate::report::plots::style::{GREY, Style};
-use crate::report::plots::{Axis, Panel, Sheet};
 use crate::stress::narrow::{Along, Curve, Point};
+use trueflight::report::ReportError;
+use trueflight::report::plots::figure::{Figure, LEFT};
+use trueflight::report::plots::font::fit;
+use trueflight::report::plots::legend::{self, Entry, LINE};
+use trueflight::report::plots::sheet::Align;
+use trueflight::report::plots::style::{GREY, Style};
+use trueflight::report::plots::{Axis, Panel, Sheet};
 
 const TOP: f64 = 138.0;
 const PANEL: [f64; 2] = [400.0, 300.0];
