@@ -62,7 +62,6 @@
 pub mod advise;
 pub mod bench;
 pub mod case;
-pub mod checks;
 pub mod cli;
 pub mod draw;
 pub mod export;
@@ -72,7 +71,7 @@ pub mod record;
 pub mod render;
 pub mod report;
 
-pub use ::{estimators, gate, media, numeric, theory};
+pub use ::{checks, estimators, gate, media, numeric, theory};
 pub use case::Catalogue;
 pub use estimators::{recipes, setup};
 pub use gate::stats;

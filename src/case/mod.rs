@@ -55,6 +55,7 @@ pub const CATALOGUE: PageList = PageList {
     pages: &[Page { module: "case", source: include_str!("mod.rs") }, media::page!(sweep)],
 };
 
+use checks::Tolerance;
 use std::path::PathBuf;
 
 use crate::case::estimator::{Defaults, read_expect};
@@ -222,24 +223,6 @@ impl Case {
         let at = self.as_written(None);
         let id = ExperimentId { namesake: estimator + 1, ..at.unnumbered(estimator) };
         id.address(seed, at.alias(estimator).as_ref())
-    }
-}
-
-/// Smallest relative differences that must be detected; `None` where the case does not give them.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Tolerance {
-    /// Tolerance of the mean, relative to the truth.
-    pub mean: Option<f64>,
-    /// Tolerance of the variance, relative to the prediction.
-    pub variance: Option<f64>,
-    /// Tolerance of the lookups, relative to the prediction.
-    pub lookups: Option<f64>,
-}
-
-impl Tolerance {
-    /// Returns whether the case gives any tolerance.
-    pub fn is_given(&self) -> bool {
-        *self != Self::default()
     }
 }
 

@@ -14,7 +14,7 @@ use crate::case::catalogue::{Catalogue, built_in};
 use crate::case::forms::explain_problem;
 use crate::case::suite;
 use crate::render::{self, Picture};
-use crate::{advise, checks, phase, report};
+use crate::{advise, phase, report};
 use estimators::recipes::{controls, sampling};
 use media::catalogue::{Page, PageList, suggestion};
 use theory::problems;

@@ -11,9 +11,9 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Ready;
-use crate::checks::batch::Batch;
-use crate::checks::check::{Observer, Place, Total};
 use crate::plan::{BLOCK, Planned, PlannedCase};
+use checks::batch::Batch;
+use checks::check::{Observer, Place, Total};
 use estimators::DrawBuffer;
 use gate::stats::Tally;
 use numeric::rng::Streams;

@@ -16,13 +16,13 @@ use std::convert::Infallible;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use crate::checks::check::Look;
 use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Progress};
 use crate::draw::share::{self, BlockName, Drawing, Share};
 use crate::draw::store::Store;
 use crate::plan::{BLOCK, Plan, Planned};
 use ::gate::session::{Sink, Until, drive};
 use ::gate::stats::gate::{self, PLANNED, TYPICAL};
+use checks::check::Look;
 
 /// Blocks drawn between two merges, for each thread, and at most: some 600 MB. Results do not depend on it.
 const BATCH: usize = 256;

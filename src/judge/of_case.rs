@@ -11,7 +11,6 @@ use crate::case::Ready;
 use crate::case::catalogue::Catalogue;
 use crate::case::id::EstimatorName;
 use crate::case::sweep::{SweepAxis, Variation, What};
-use crate::checks;
 use ::theory::{CountDistribution, Distribution, Prediction};
 use gate::Check;
 use numeric::digits::{number, short};

@@ -19,11 +19,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::case::sweep::Variation;
 use crate::case::{Case, Ready};
-use crate::checks::check::Share;
-use crate::checks::{self, Pilot, Question, Scalar, Subject};
 use crate::plan::levels::Levels;
 use ::gate::stats::gate;
 use ::gate::stats::verdict::Verdict;
+use checks::check::Share;
+use checks::{self, Pilot, Question, Scalar, Subject};
 use estimators::{DrawBuffer, Refusal};
 use numeric::pack::WIDTH;
 use numeric::rng::{Address, PILOT, Streams};

@@ -11,11 +11,11 @@
 //! experiment inconclusive unless the case allows it.
 
 use crate::case::Ready;
-use crate::checks::check::{Context, Look, Total};
-use crate::checks::{Inspected, Question};
 use crate::draw::block::{DrawnExperiment, Draws};
 use crate::plan::{BLOCK, Plan, Planned};
 use crate::record::{Finding, Verdict};
+use checks::check::{Context, Look, Total};
+use checks::{Inspected, Question};
 use gate::deviation::Deviation;
 use gate::session::{self, Reason};
 use gate::stats::multiplicity;

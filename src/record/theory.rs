@@ -1,9 +1,9 @@
 //! Predictions and statistics of an experiment, for a record.
 
-use crate::checks::normality::{Tails, needed};
 use crate::draw::block::DrawnExperiment;
 use crate::plan::{Planned, PlannedCase};
 use crate::record::{ChannelRecord, Course, ExperimentRecord, Score, Verdict};
+use checks::normality::{Tails, needed};
 use estimators::Refusal;
 use gate::stats::Tally;
 use theory::prediction::CERTAIN;

@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::{Baseline, ChannelId, Entry, Evidence};
-use crate::checks::normality::{Tails, variance_error};
+use checks::normality::{Tails, variance_error};
 use gate::stats::normal;
 
 /// Levels of a comparison.

@@ -2,10 +2,10 @@
 
 use super::batch::{Batch, Observe};
 use super::check::{Check, Context, Found, Look, Observer, Place, Share, Subject, Total};
-use crate::plan::BLOCK;
-use ::gate::deviation::signed_percent;
-use ::gate::session::{BlockSums, Ground, Planned, Quantity, Reason, Trail};
-use ::gate::stats::gate::Decision;
+use gate::deviation::signed_percent;
+use gate::session::{BlockSums, Ground, Planned, Quantity, Reason, Trail};
+use gate::stats::gate::Decision;
+use gate::stats::verdict::BLOCK;
 use numeric::digits::short;
 
 /// Quantity y of each draw that has mean 0 and a known variance if the draws are correct.

@@ -27,7 +27,7 @@ use self::permutation::{Groups, distinct};
 use super::judgement::{Comparison, Dependence, Judgement, Tile};
 use super::{ImageError, NOISY_VALUES, Options, Stack, claim, repeats, tiles, variance, verdict};
 use super::{neighbours_of, order_of, refuted};
-use crate::judge::{ROUNDING, SIDE_SHARE, decide_together, main_share};
+use crate::{ROUNDING, SIDE_SHARE, decide_together, main_share};
 use gate::stats::verdict::Verdict;
 
 /// Claims about two stacks.

@@ -5,9 +5,9 @@ use std::panic::{RefUnwindSafe, UnwindSafe};
 
 use super::batch::Batch;
 use super::check::{Check, Context, Found, Observer, Place, Share, Total};
-use ::gate::session::Reason;
-use ::gate::stats::verdict::Verdict;
 use estimators::{DrawBuffer, Experiment};
+use gate::session::Reason;
+use gate::stats::verdict::Verdict;
 use numeric::rng::Streams;
 use numeric::sum::Sum;
 

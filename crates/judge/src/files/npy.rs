@@ -64,7 +64,7 @@ mod tests {
 
     use super::super::{Column, Draws, Format, all};
     use super::*;
-    use crate::judge::{Block, Source};
+    use crate::{Block, Source};
 
     /// Returns a header as `numpy.save` writes it.
     fn whole_header(kind: &str, order: &str, shape: &str) -> Vec<u8> {

@@ -4,7 +4,7 @@ use super::claim::{Claim, Pixels};
 use super::judgement::{Comparison, Judgement, Refuted, Tile};
 use super::picture::Stack;
 use super::promises::{guarantees, guarantees_against};
-use crate::judge::{Reasons, SIDE_SHARE};
+use crate::{Reasons, SIDE_SHARE};
 use gate::deviation::{Deviation, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{enough, percent, short};

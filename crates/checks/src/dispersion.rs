@@ -11,9 +11,9 @@
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
 use super::distribution::DistributionTest;
-use crate::checks::normality;
-use crate::plan::BLOCK;
+use crate::normality;
 use gate::stats::chi_square;
+use gate::stats::verdict::BLOCK;
 use numeric::sum::sum_in_lanes;
 
 /// Smallest number of blocks for a test.

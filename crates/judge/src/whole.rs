@@ -18,9 +18,9 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::{Asked, Distribution, DistributionFinding, Reason, Tested, Tests};
-use crate::checks::batch::Batch;
-use crate::checks::resolution::{self, Resolution};
-use crate::checks::{self, DistributionTest};
+use checks::batch::Batch;
+use checks::resolution::{self, Resolution};
+use checks::{self, DistributionTest};
 use estimators::DrawBuffer;
 use gate::stats::verdict::{BLOCK, Verdict};
 use gate::stats::{multiplicity, ties};
@@ -41,7 +41,7 @@ const HARMLESS: f64 = 0.05;
 
 /// The distribution of an experiment's draw.
 #[derive(Debug)]
-pub(super) struct Known(pub Arc<Prediction>);
+pub struct Known(pub Arc<Prediction>);
 
 impl Distribution for Known {
     fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String> {

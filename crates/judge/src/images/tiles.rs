@@ -15,7 +15,7 @@
 use super::claim::Pixels;
 use super::judgement::Tile;
 use super::picture::{Size, Stack};
-use crate::judge::{AT_THE_END, Ground, Levels, Quantity, Scalar};
+use crate::{AT_THE_END, Ground, Levels, Quantity, Scalar};
 use gate::session::quantity::MEAN_CAP;
 use gate::stats::gate::{HORIZON, PLANNED};
 use gate::stats::normal::{upper_quantile, upper_tail};

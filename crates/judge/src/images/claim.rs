@@ -4,7 +4,7 @@ use std::io;
 
 use super::picture::{Picture, Size, Stack};
 use super::variance::Estimated;
-use crate::judge::ROUNDING;
+use crate::ROUNDING;
 use gate::stats::verdict::FURTHEST;
 use numeric::digits::counted;
 

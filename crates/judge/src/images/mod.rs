@@ -57,7 +57,7 @@ pub use picture::{Picture, Size, Stack};
 use self::claim::Pixels;
 use self::judgement::{Dependence, Refuted, Tile, Variance};
 use self::tiles::{Part, Terms};
-use crate::judge::{Levels, SIDE_SHARE, decide_together, is_by_spread, main_share};
+use crate::{Levels, SIDE_SHARE, decide_together, is_by_spread, main_share};
 use gate::stats::gate::{Evidence, VARIANCE_MARGIN};
 use theory::parallel;
 

@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 use super::batch::Batch;
 use super::distribution::{DistributionTest, Inspected};
 use super::scalar::Scalar;
-use crate::case::Tolerance;
-use ::gate::deviation::Deviation;
-use ::gate::session::{Levels, Reason, Trail};
-use ::gate::stats::verdict::{GateFinding, Verdict};
+use crate::Tolerance;
+use gate::deviation::Deviation;
+use gate::session::{Levels, Reason, Trail};
+use gate::stats::verdict::{GateFinding, Verdict};
 use numeric::sum::Sum;
 use theory::{Channel, Moments, Prediction};
 

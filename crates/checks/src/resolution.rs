@@ -13,8 +13,8 @@
 
 use super::check::{Question, Subject};
 use super::distribution::{Inspected, Inspection};
-use crate::plan::BLOCK;
 use gate::stats::ties;
+use gate::stats::verdict::BLOCK;
 use theory::{Distribution, Prediction};
 
 /// Smallest number of collisions that is evidence of their resolution.

@@ -16,7 +16,7 @@ use super::judgement::Tile;
 use super::picture::Stack;
 use super::tiles::{Part, Terms, mean_at};
 use super::variance;
-use crate::judge::{AT_THE_END, Quantity, Scalar};
+use crate::{AT_THE_END, Quantity, Scalar};
 use gate::stats::capital::ln_mean_exp;
 use gate::stats::estimated_variance::{Estimate, Gathered};
 use gate::stats::normal::{upper_quantile, upper_tail};

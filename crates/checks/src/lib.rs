@@ -36,6 +36,24 @@ pub use check::{Check, Pilot, Question, Subject, rounding};
 pub use distribution::{DistributionTest, Inspected};
 pub use scalar::Scalar;
 
+/// Smallest relative differences that must be detected; `None` where the case does not give them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tolerance {
+    /// Tolerance of the mean, relative to the truth.
+    pub mean: Option<f64>,
+    /// Tolerance of the variance, relative to the prediction.
+    pub variance: Option<f64>,
+    /// Tolerance of the lookups, relative to the prediction.
+    pub lookups: Option<f64>,
+}
+
+impl Tolerance {
+    /// Returns whether the case gives any tolerance.
+    pub fn is_given(&self) -> bool {
+        *self != Self::default()
+    }
+}
+
 /// Page of the catalogue of checks.
 struct Page {
     /// Returns its questions about an experiment; none where it does not apply.

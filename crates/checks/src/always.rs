@@ -2,9 +2,9 @@
 
 use super::batch::Batch;
 use super::check::{Check, Context, Found, Observer, Place, Total};
-use ::gate::session::Reason;
-use ::gate::stats::verdict::Verdict;
 use estimators::DrawBuffer;
+use gate::session::Reason;
+use gate::stats::verdict::Verdict;
 
 /// A bound that every draw must keep.
 pub struct Always {

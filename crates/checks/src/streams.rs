@@ -13,8 +13,8 @@
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
 use super::distribution::DistributionTest;
-use crate::plan::BLOCK;
 use gate::stats::correlation;
+use gate::stats::verdict::BLOCK;
 
 /// L.
 const FIRST: usize = 1024;

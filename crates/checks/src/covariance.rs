@@ -14,7 +14,7 @@ use super::check::{Check, Question, Subject, Untestable};
 use super::distribution::DistributionTest;
 use super::mean::is_faint;
 use super::scalar::{Scalar, variance};
-use crate::case::Tolerance;
+use crate::Tolerance;
 use estimators::DrawBuffer;
 use gate::session::Quantity;
 use gate::stats::gate::GateSums;

@@ -26,7 +26,7 @@ use super::claim::{Claim, ImageError, Level, Pixels};
 use super::judgement;
 use super::picture::{Picture, Size, Stack};
 use super::tiles::Part;
-use crate::judge::{AT_THE_END, Quantity, Scalar};
+use crate::{AT_THE_END, Quantity, Scalar};
 use gate::session::quantity::{VARIANCE_CAP, variance_floor};
 use gate::stats::estimated_variance::Estimate;
 use theory::parallel;

@@ -1,7 +1,7 @@
 //! Judgement of a stack of pictures.
 
 use super::picture::{Size, Stack};
-use crate::judge::LISTED;
+use crate::LISTED;
 use gate::causes::Pattern;
 use gate::stats::gate::Evidence;
 use gate::stats::verdict::{MISS, Verdict};
