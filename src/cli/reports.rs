@@ -94,7 +94,7 @@ impl Reports {
     ) -> Option<usize> {
         for (flag, path) in self.files() {
             let text = match flag {
-                "--junit" => junit::text(record, Inconclusive::in_junit(self.inconclusive)),
+                "--junit" => Ok(junit::text(record, Inconclusive::in_junit(self.inconclusive))),
                 "--record" => record_json::text(record),
                 _ => Ok(markdown::text(record)),
             };

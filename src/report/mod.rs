@@ -2,7 +2,7 @@
 //!
 //! Reports are stored by input: each folder has the screen, the tables, the page and the plots of one kind of results.
 //! [`run`] is about a [`Record`](crate::record::Record). Shared are [`fields`], [`layout`], [`lists`], [`page`],
-//! [`mod@html`] and [`plots`].
+//! [`mod@html`], [`junit`] and [`plots`].
 //! A report does no arithmetic beyond formatting.
 
 #![allow(clippy::missing_errors_doc)] // [`ReportError`] tells all of them
@@ -13,6 +13,7 @@ pub mod changes;
 pub mod fields;
 pub mod html;
 pub mod judge;
+pub mod junit;
 pub mod layout;
 pub mod lists;
 pub mod manual;
@@ -58,9 +59,6 @@ pub enum ReportError {
     /// The json encoder failed.
     #[error("cannot encode as json: {0}")]
     Json(#[from] serde_json::Error),
-    /// The XML encoder failed.
-    #[error("cannot encode as JUnit XML: {0}")]
-    Junit(#[from] quick_junit::SerializeError),
     /// A drawing could not be painted.
     #[error("cannot draw {figure}: {message}")]
     Draw {

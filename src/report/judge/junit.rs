@@ -3,12 +3,10 @@
 //! A fail is a `failure`; an inconclusive verdict is an `error`, a `failure` or `skipped`, as asked for. A file that
 //! could not be read is an `error`.
 
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
-
 use crate::judge::{Judgement, images};
 use crate::record::Verdict;
-use crate::report::ReportError;
-use crate::report::run::junit::{Inconclusive, encoded, status_of};
+use crate::report::junit::{self, Kind, Suite, Test, Trouble};
+use crate::report::run::junit::{Inconclusive, trouble_of};
 use numeric::digits::number;
 
 /// Verdict on a file or a stack of images.
@@ -64,31 +62,34 @@ pub fn text(
     unread: &[(String, String)],
     alpha: f64,
     inconclusive: Inconclusive,
-) -> Result<String, ReportError> {
-    let mut report = Report::new("trueflight");
-    let mut suite = TestSuite::new("judge");
-    suite.add_property(("alpha", &*number(alpha)));
-    for told in told {
-        suite.add_test_case(test(told, inconclusive));
-    }
-    for (name, reason) in unread {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-        status.set_type("unreadable").set_message(&**reason);
-        let mut test = TestCase::new(&**name, status);
-        test.set_classname("judge");
-        suite.add_test_case(test);
-    }
-    report.add_test_suite(suite);
-    encoded(&report)
+) -> String {
+    let unread = unread.iter().map(|(name, reason)| Test {
+        name: name.clone(),
+        class: Some("judge".to_owned()),
+        trouble: Some(Trouble {
+            kind: Kind::Error,
+            word: "unreadable",
+            message: reason.clone(),
+            details: None,
+        }),
+        ..Test::default()
+    });
+    let suite = Suite {
+        name: "judge".to_owned(),
+        properties: vec![("alpha", number(alpha))],
+        tests: told.iter().map(|told| test(told, inconclusive)).chain(unread).collect(),
+        ..Suite::default()
+    };
+    junit::text(&[suite], None)
 }
 
-fn test(told: &Told, inconclusive: Inconclusive) -> TestCase {
-    let details = || told.lines.join("\n");
-    let status = status_of(told.verdict, &told.reason, inconclusive, details);
-    let mut test = TestCase::new(&*told.name, status);
-    if told.verdict == Verdict::Pass && !told.reason.is_empty() {
-        test.set_system_out(format!("pass: {}", told.reason));
+fn test(told: &Told, inconclusive: Inconclusive) -> Test {
+    let is_remarkable = told.verdict == Verdict::Pass && !told.reason.is_empty();
+    Test {
+        name: told.name.clone(),
+        class: Some("judge".to_owned()),
+        time: None,
+        trouble: trouble_of(told.verdict, &told.reason, inconclusive, || told.lines.join("\n")),
+        output: is_remarkable.then(|| format!("pass: {}", told.reason)),
     }
-    test.set_classname("judge");
-    test
 }

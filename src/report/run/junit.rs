@@ -7,11 +7,9 @@
 
 use std::time::Duration;
 
-use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
-
 use crate::record::baseline::Comparison;
 use crate::record::{CaseRecord, Record, Row, Verdict};
-use crate::report::ReportError;
+use crate::report::junit::{self, Kind, Suite, Test, Trouble};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure};
 use numeric::digits::number;
@@ -29,106 +27,98 @@ pub enum Inconclusive {
 }
 
 /// Returns the record as JUnit XML.
-pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, ReportError> {
-    let mut report = quick_junit::Report::new("trueflight");
-    report.set_time(duration(record.timing.seconds));
-    for case in &record.results.cases {
-        report.add_test_suite(suite(record, case, inconclusive));
-    }
-    if let Some(comparison) = &record.comparison {
-        report.add_test_suite(changed(comparison));
-    }
-    encoded(&report)
+pub fn text(record: &Record, inconclusive: Inconclusive) -> String {
+    let cases = record.results.cases.iter().map(|case| suite(record, case, inconclusive));
+    let suites: Vec<Suite> = cases.chain(record.comparison.as_ref().map(changed)).collect();
+    junit::text(&suites, Some(duration(record.timing.seconds)))
 }
 
-fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> TestSuite {
+fn suite(record: &Record, case: &CaseRecord, inconclusive: Inconclusive) -> Suite {
     let results = &record.results;
-    let mut suite = TestSuite::new(&*case.name);
-    for (name, value) in [
-        ("title", case.title.clone()),
-        ("seed", results.seed.to_string()),
-        ("alpha", number(results.alpha)),
-        ("version", results.version.clone()),
-        ("schema", results.schema.to_string()),
-    ] {
-        suite.add_property((name, &*value));
-    }
     let mut whole = Duration::ZERO;
-    for row in case.rows() {
+    let tests = case.rows().map(|row| {
         let time = row.experiment.spent.seconds.filter(|_| row.is_first());
         let time = time.map_or(Duration::ZERO, duration);
         whole = whole.saturating_add(time);
-        let status = status(row, results.seed, inconclusive);
-        let mut test = TestCase::new(row.name(), status);
-        test.set_classname(&*case.name).set_time(time);
-        suite.add_test_case(test);
+        Test {
+            name: row.name(),
+            class: Some(case.name.clone()),
+            time: Some(time),
+            trouble: trouble(row, results.seed, inconclusive),
+            output: None,
+        }
+    });
+    let tests = tests.collect();
+    Suite {
+        name: case.name.clone(),
+        time: Some(whole),
+        properties: vec![
+            ("title", case.title.clone()),
+            ("seed", results.seed.to_string()),
+            ("alpha", number(results.alpha)),
+            ("version", results.version.clone()),
+            ("schema", results.schema.to_string()),
+        ],
+        tests,
+        output: (!case.notes.is_empty()).then(|| case.notes.join("\n")),
     }
-    suite.set_time(whole);
-    if !case.notes.is_empty() {
-        suite.set_system_out(case.notes.join("\n"));
-    }
-    suite
 }
 
 /// Returns a suite for the changes since a stored run: a test for each change, or one that passes if nothing changed.
 /// Its output is the extent of the comparison, and the experiments that were left out.
-fn changed(comparison: &Comparison) -> TestSuite {
-    let mut suite = TestSuite::new(format!("baseline {}", comparison.name));
-    suite.set_system_out(diff::remarks(comparison).join("\n"));
+fn changed(comparison: &Comparison) -> Suite {
     let all = diff::all(comparison);
+    let mut tests = Vec::new();
     if let Some(nothing) = diff::nothing(comparison) {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-        status.set_type("nothing").set_message(nothing);
-        suite.add_test_case(TestCase::new("something was compared", status));
+        let trouble =
+            Trouble { kind: Kind::Error, word: "nothing", message: nothing, details: None };
+        let name = "something was compared".to_owned();
+        tests.push(Test { name, trouble: Some(trouble), ..Test::default() });
     } else if !all.iter().any(|change| change.is_worse) {
-        suite.add_test_case(TestCase::new("nothing became worse", TestCaseStatus::success()));
+        tests.push(Test { name: "nothing became worse".to_owned(), ..Test::default() });
     }
-    for change in all.iter().filter(|change| change.is_worse) {
-        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-        status.set_type("regression").set_message(change.what());
-        status.set_description(format!("{}\nrepeat: {}\n", change.line(), change.command));
-        suite.add_test_case(TestCase::new(change.experiment.as_str(), status));
+    tests.extend(all.iter().filter(|change| change.is_worse).map(|change| {
+        let details = format!("{}\nrepeat: {}\n", change.line(), change.command);
+        let trouble = Trouble {
+            kind: Kind::Failure,
+            word: "regression",
+            message: change.what(),
+            details: Some(details),
+        };
+        Test { name: change.experiment.clone(), trouble: Some(trouble), ..Test::default() }
+    }));
+    Suite {
+        name: format!("baseline {}", comparison.name),
+        tests,
+        output: Some(diff::remarks(comparison).join("\n")),
+        ..Suite::default()
     }
-    suite
 }
 
-fn status(row: Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
+fn trouble(row: Row, seed: u64, inconclusive: Inconclusive) -> Option<Trouble> {
     let details = || {
         let details = failures::of_row(row, seed);
         details.iter().map(Failure::details).collect::<Vec<_>>().join("\n")
     };
-    status_of(row.verdict.unwrap_or(Verdict::Pass), &row.reason, inconclusive, details)
+    trouble_of(row.verdict.unwrap_or(Verdict::Pass), &row.reason, inconclusive, details)
 }
 
-/// Returns the status of a verdict with its reason; a fail or an inconclusive verdict has details.
-pub fn status_of(
+/// Returns the result of a verdict that is no pass, with its reason; a fail or an inconclusive verdict has details.
+pub fn trouble_of(
     verdict: Verdict,
     reason: &str,
     inconclusive: Inconclusive,
     details: impl FnOnce() -> String,
-) -> TestCaseStatus {
-    let mut status = match (verdict, inconclusive) {
-        (Verdict::Pass, _) => return TestCaseStatus::success(),
-        (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => {
-            TestCaseStatus::non_success(NonSuccessKind::Failure)
-        }
-        (Verdict::Inconclusive, Inconclusive::Error) => {
-            TestCaseStatus::non_success(NonSuccessKind::Error)
-        }
-        _ => TestCaseStatus::skipped(),
+) -> Option<Trouble> {
+    let kind = match (verdict, inconclusive) {
+        (Verdict::Pass, _) => return None,
+        (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => Kind::Failure,
+        (Verdict::Inconclusive, Inconclusive::Error) => Kind::Error,
+        _ => Kind::Skipped,
     };
-    status.set_type(verdict.word());
-    status.set_message(reason);
-    if matches!(verdict, Verdict::Fail | Verdict::Inconclusive) {
-        status.set_description(details());
-    }
-    status
-}
-
-/// Returns the report as text. The schema has no count of skipped tests at the root; the suites have theirs.
-pub fn encoded(report: &quick_junit::Report) -> Result<String, ReportError> {
-    let skipped = format!(" skipped=\"{}\"", report.skipped);
-    Ok(report.to_string()?.replacen(&skipped, "", 1))
+    let is_told = matches!(verdict, Verdict::Fail | Verdict::Inconclusive);
+    let (word, message) = (verdict.word(), reason.to_owned());
+    Some(Trouble { kind, word, message, details: is_told.then(details) })
 }
 
 fn duration(seconds: f64) -> Duration {
