@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write};
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use crate::report::fields::{self, Shown, Table, shown, table};
 use crate::report::html as page;

@@ -1,6 +1,6 @@
 //! `report.html` of an advice: the ranking, the figure, and the lines for a case.
 
-use maud::html;
+use crate::report::html::template::html;
 
 use super::{Joined, console};
 use crate::advise::Advice;

@@ -1,6 +1,6 @@
 //! `report.html` of a bench: times of all experiments, decrease of their errors, changes.
 
-use maud::html;
+use crate::report::html::template::html;
 
 use super as files;
 use super::tables::Joined;

@@ -1,6 +1,6 @@
 //! Plots of a page, each defined once and shown wherever it is needed.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use crate::report::plots::Sheet;
 use crate::report::plots::sheet::Tip;

@@ -2,7 +2,7 @@
 
 use super::{document, words};
 use crate::report::fields::{Field, Shown, Table};
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 use std::collections::BTreeSet;
 
 /// Returns a page: the tool in words, a heading with its style class, what stands below it, and sections.

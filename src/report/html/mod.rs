@@ -2,9 +2,10 @@
 
 pub mod drawing;
 pub mod listing;
+pub mod template;
 pub mod words;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use template::{Markup, html};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
@@ -18,7 +19,7 @@ const OPTIONAL: [&str; 7] = ["</td>", "</th>", "</tr>", "</dt>", "</dd>", "</li>
 /// Returns a page of HTML with this title and these sections.
 pub fn document(title: &str, sections: &Markup) -> String {
     let page = html! {
-        (DOCTYPE)
+        (Markup::raw("<!DOCTYPE html>"))
         html lang="en" {
             head {
                 meta charset="utf-8";
@@ -26,12 +27,12 @@ pub fn document(title: &str, sections: &Markup) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (Markup::raw(STYLE)) }
             }
             body {
                 a.skip href="#experiments" { "To the table of experiments" }
                 main { (sections) }
-                script { (PreEscaped(SCRIPT)) }
+                script { (Markup::raw(SCRIPT)) }
             }
         }
     };

@@ -1,6 +1,6 @@
 //! Numbers and verdicts as text of the page.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use crate::record::{Row, Verdict};
 use crate::report::fields::Field;

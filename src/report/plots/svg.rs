@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 use plotters::style::RGBAColor;
 
 use crate::report::plots::font::{BASELINE, FAMILY};

@@ -1,8 +1,8 @@
 //! `gallery/report.html`: the sheets of all pictures, and their errors as a table.
 
+use crate::report::html::template::html;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use maud::html;
 
 use super::Joined;
 use crate::render::PictureRecord;

@@ -13,7 +13,7 @@ mod map;
 mod scores;
 mod sparks;
 
-use maud::html;
+use crate::report::html::template::html;
 
 use crate::record::{CaseRecord, Record};
 use crate::report::fields::Table;

@@ -3,9 +3,9 @@
 use crate::record::{CaseRecord, Record};
 use crate::report::html as page;
 use crate::report::html::drawing::Plot;
+use crate::report::html::template::{Markup, html};
 use crate::report::html::words;
 use crate::report::run::totals;
-use maud::{Markup, html};
 use numeric::digits::range;
 
 /// Returns a line for each case; those with plots open.

@@ -1,6 +1,6 @@
 //! Details of an experiment, which open below it: its numbers, the path of the evidence, its plots, and how to repeat it.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use super::sparks;
 use crate::record::{Compared, Finding, Row, Score, Verdict};

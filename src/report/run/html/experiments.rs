@@ -1,6 +1,6 @@
 //! Table of all experiments, a row for each channel, and its legend. Rows are hidden and moved by the page's script.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use super::details::{self, Shown};
 use super::sparks;
@@ -35,7 +35,7 @@ pub fn section<'a>(record: &'a Record, shown: &Shown<'a>) -> Markup {
             h2 #experiments { "Experiments" }
             (sparks::ground())
             (listing::form(&choices(&rows), rows.len()))
-            table #table.experiments {
+            table.experiments #table {
                 thead { tr {
                     th scope="col" title=(VERDICT) { "verdict" }
                     th scope="col" title=(EXPERIMENT) { "experiment" }

@@ -1,7 +1,7 @@
 //! Cards of checks that fail or are inconclusive, one for each check of an estimator, with the measured values over those
 //! of theory.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 use plotters::style::RGBAColor;
 
 use crate::record::{Compared, Record, Row, Score, Verdict};

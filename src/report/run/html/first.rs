@@ -1,7 +1,7 @@
 //! First screen: the verdict and the command, then pictures: the map of verdicts, the distribution of z, and cards of
 //! what does not pass.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use super::{failing, map, scores};
 use crate::record::scores as of_run;

@@ -1,7 +1,7 @@
 //! Map of verdicts: a block for each case, a line for each estimator, a cell for each experiment with σ̂ or the swept
 //! quantity from left to right. With many cases each is one line.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use crate::record::{CaseRecord, Digits, ExperimentRecord, Record, Row, Verdict};
 use crate::report::html::words;

@@ -1,7 +1,7 @@
 //! Small plots inside a row that opens: ln E from look to look, and the fields along the ray of a refused experiment.
 //! They take their colours from the page, light or dark.
 
-use maud::{Markup, html};
+use crate::report::html::template::{Markup, html};
 
 use crate::record::{Course, Finding};
 use crate::report::lists::joined;

@@ -1,6 +1,6 @@
 //! `stress/report.html`: every bound of the stress test, and where single precision fails.
 
-use maud::html;
+use trueflight::report::html::template::html;
 
 use crate::stress::{Row, Stress};
 use numeric::digits::time;
