@@ -27,6 +27,7 @@ mod merge;
 pub mod numbers;
 pub mod output;
 mod predict;
+mod progress;
 pub mod ranks;
 mod render;
 mod reports;

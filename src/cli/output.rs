@@ -1,14 +1,13 @@
 //! Output on the console: results on stdout, the rest on stderr.
 
-use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 use anyhow::Context;
 use clap::ValueEnum;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::progress::Bar;
 use super::{Console, USAGE};
 use crate::case::CaseError;
 use crate::record::Record;
@@ -215,7 +214,7 @@ fn tell(kind: &str, text: &str) {
 }
 
 /// Returns a bar on the terminal's stderr; hidden if stderr is not a terminal.
-pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> ProgressBar {
+pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> Bar {
     progress_until(doing, things, length, None, options)
 }
 
@@ -226,25 +225,9 @@ pub fn progress_until(
     length: u64,
     seconds: Option<f64>,
     options: &Console,
-) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
-    if !options.quiet && std::io::stderr().is_terminal() {
-        bar.set_draw_target(ProgressDrawTarget::stderr());
-        let template =
-            format!("{doing} {{wide_bar}} {{human_pos}} of {{human_len}} {things}, {{left}} left");
-        let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-        let left = move |state: &ProgressState, text: &mut dyn fmt::Write| {
-            let limited = limit.map(|limit| limit.saturating_sub(state.elapsed()));
-            let left = limited.unwrap_or(Duration::MAX).min(state.eta());
-            // A bar has no place to report an error to.
-            let _ = write!(text, "{:#}", HumanDuration(left));
-        };
-        if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style.with_key("left", left));
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
-    }
-    bar
+) -> Bar {
+    let is_shown = !options.quiet && std::io::stderr().is_terminal();
+    Bar::new([doing, things], length, seconds, is_shown)
 }
 
 /// Makes the folder of a run, which keeps draws in it from the first on; fails if it cannot be written to.
