@@ -6,7 +6,8 @@ use crate::report::ReportError;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::{COLOURS, DARK, Style};
-use crate::report::plots::{Axis, Panel, Sheet};
+use crate::report::plots::{Axis, Panel};
+use drawing::Sheet;
 use numeric::digits::{counted, number, short};
 
 const WIDTH: f64 = 1200.0;

@@ -12,8 +12,9 @@ use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::series::{marks, numbered};
 use crate::report::plots::style::Style;
-use crate::report::plots::{self, Axis, Panel, Sheet};
+use crate::report::plots::{self, Axis, Panel};
 use crate::report::{Artifact, ReportError};
+use drawing::Sheet;
 use numeric::digits::count;
 
 const WIDTH: f64 = 1200.0;

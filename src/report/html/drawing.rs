@@ -2,9 +2,9 @@
 
 use crate::report::html::template::{Markup, html};
 
-use crate::report::plots::Sheet;
-use crate::report::plots::sheet::Tip;
 use crate::report::plots::svg::{shapes, unit, view};
+use drawing::Sheet;
+use drawing::sheet::Tip;
 
 /// Plot that the page defines.
 pub struct Plot {

@@ -1,12 +1,10 @@
 //! Figure: a sheet with its title, and the typeface that measures its words.
 
-use ab_glyph::InvalidFont;
-
 use crate::report::ReportError;
-use crate::report::plots::font::{Typeface, fit, wrapped};
 use crate::report::plots::legend::{self, Entry, LINE};
-use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{DARK, GREY};
+use drawing::font::{InvalidFont, Typeface, fit, wrapped};
+use drawing::sheet::{Align, Sheet};
 
 /// Size of notes.
 const NOTE: f64 = 12.5;

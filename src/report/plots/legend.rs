@@ -2,9 +2,9 @@
 
 use plotters::style::RGBAColor;
 
-use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::sheet::{Align, Sheet, Spot};
 use crate::report::plots::style::{DARK, GREY, Marker, PAPER};
+use drawing::font::{Typeface, fit};
+use drawing::sheet::{Align, Sheet, Spot};
 
 /// Height of one line of a legend.
 pub const LINE: f64 = 22.0;

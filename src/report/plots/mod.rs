@@ -5,22 +5,20 @@
 
 pub mod axis;
 pub mod figure;
-pub mod font;
 pub mod legend;
 pub mod overlap;
-pub mod paint;
 pub mod panel;
 pub mod series;
-pub mod sheet;
 pub mod style;
 pub mod svg;
 pub mod z_panel;
 
 use crate::report::{Artifact, ReportError, case_path};
+use drawing::font::Typeface;
+use drawing::{Sheet, paint, palette};
 
 pub use axis::Axis;
 pub use panel::Panel;
-pub use sheet::Sheet;
 
 /// Returns the figure of a case in both formats, as `CASE.svg` and `CASE.png` for the ending `""`, or
 /// `CASE.anatomy.svg` and so on for the ending `"anatomy."`.
@@ -34,4 +32,15 @@ pub fn artifacts(case: &str, ending: &str, sheet: &Sheet) -> Result<Vec<Artifact
         },
         Artifact { path: case_path(case, &format!("{ending}png")), bytes: png },
     ])
+}
+
+/// Returns a sheet as the file `NAME.png`, with a palette where its colours are few.
+pub fn picture(
+    name: &str,
+    compose: impl FnOnce(&Typeface) -> Sheet,
+) -> Result<Artifact, ReportError> {
+    let wrong = |message| ReportError::Draw { figure: name.to_owned(), message };
+    let face = Typeface::load().map_err(|error| wrong(error.to_string()))?;
+    let bytes = palette::png(&compose(&face)).map_err(wrong)?;
+    Ok(Artifact { path: format!("{name}.png").into(), bytes })
 }

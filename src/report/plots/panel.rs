@@ -3,8 +3,8 @@
 use plotters::style::RGBAColor;
 
 use crate::report::plots::Axis;
-use crate::report::plots::sheet::{Align, Sheet, Spot};
 use crate::report::plots::style::{DARK, FAINT, Marker};
+use drawing::sheet::{Align, Sheet, Spot};
 
 /// Size of labels on ticks.
 const TICK: f64 = 13.0;
@@ -215,7 +215,7 @@ impl Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::plots::sheet::Shape;
+    use drawing::sheet::Shape;
 
     fn panel() -> Panel {
         let axis = |log| Axis { title: String::new(), log, low: 1.0, high: 10.0 };

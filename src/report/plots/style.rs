@@ -2,7 +2,7 @@
 
 use plotters::style::RGBAColor;
 
-use crate::report::plots::sheet::{Sheet, Spot};
+use drawing::sheet::{Sheet, Spot};
 
 /// Returns an opaque colour.
 pub const fn ink(red: u8, green: u8, blue: u8) -> RGBAColor {

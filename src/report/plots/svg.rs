@@ -6,8 +6,8 @@ use std::fmt::Write;
 use crate::report::html::template::{Markup, html};
 use plotters::style::RGBAColor;
 
-use crate::report::plots::font::{BASELINE, FAMILY};
-use crate::report::plots::sheet::{Align, Label, Shape, Sheet, Spot};
+use drawing::font::{BASELINE, FAMILY};
+use drawing::sheet::{Align, Label, Shape, Sheet, Spot};
 
 /// Number of units of a pixel.
 const UNITS: f64 = 10.0;

@@ -3,12 +3,13 @@
 use plotters::style::RGBAColor;
 
 use crate::record::{Score, Sweep};
-use crate::report::plots::font::Typeface;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::overlap::smallest_step;
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{GREY, Marker, PAPER, ink};
-use crate::report::plots::{Axis, Panel, Sheet};
+use crate::report::plots::{Axis, Panel};
+use drawing::Sheet;
+use drawing::font::Typeface;
 use numeric::digits::{short, signed};
 
 /// Limit of |z| within which 95 % of the scores of a correct estimator lie.

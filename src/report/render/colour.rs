@@ -1,7 +1,7 @@
 //! Numbers as colours.
 
-use crate::report::plots::sheet::{Align, Sheet, Spot};
 use crate::report::plots::style::{DARK, GREY, ink};
+use drawing::sheet::{Align, Sheet, Spot};
 
 /// `RdBu` of C. Brewer, *`ColorBrewer`* (2003), from blue over white to red: distinct without red or green, too.
 const DIVERGING: [[f64; 3]; 9] = [

@@ -3,7 +3,6 @@
 
 pub mod colour;
 pub mod html;
-pub mod palette;
 pub mod sheet;
 
 use std::path::PathBuf;
@@ -12,6 +11,7 @@ use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::fields::{self, Table, table};
 use crate::report::lists;
+use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 use media::files::{exr, pfm};
 
@@ -22,7 +22,7 @@ const ERROR: &str = "standard_error.";
 /// and as EXR. The EXR has the standard error of each value in channels of its own.
 pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: record.name.clone(), message };
-    let mut files = vec![palette::artifact(&record.name, |face| sheet::compose(record, face))?];
+    let mut files = vec![plots::picture(&record.name, |face| sheet::compose(record, face))?];
     let mut keep = |name: &str, image: &[f64], errors: &[f64]| -> Result<(), ReportError> {
         let path = |ending| PathBuf::from(format!("{}/{name}.{ending}", record.name));
         let bytes = pfm::write(record.size, record.channels, image);

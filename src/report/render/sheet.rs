@@ -4,9 +4,9 @@
 use super::{colour, given, short};
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
-use crate::report::plots::font::{self, Typeface, fit};
-use crate::report::plots::sheet::{Align, Image, Sheet};
 use crate::report::plots::style::{DARK, FAINT, GREY};
+use drawing::font::{self, Typeface, fit};
+use drawing::sheet::{Align, Image, Sheet};
 
 /// Number of units of the sheet per pixel of the file.
 const FILE_PIXEL: f64 = 2.0 / 3.0;

@@ -11,8 +11,9 @@ use crate::record::{Anatomy, CaseRecord, Record};
 use crate::report::plots::figure::{Figure, LEFT, subject};
 use crate::report::plots::legend::{self, Entry};
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};
-use crate::report::plots::{self, Axis, Panel, Sheet};
+use crate::report::plots::{self, Axis, Panel};
 use crate::report::{Artifact, ReportError};
+use drawing::Sheet;
 use numeric::digits::short;
 
 const RIGHT: f64 = 940.0;

@@ -9,8 +9,9 @@ use crate::record::{CaseRecord, Compared, Record, Score, Sweep};
 use crate::report::lists::joined;
 use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
 use crate::report::plots::series::{self, Series, collect, only_channel};
-use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
+use crate::report::plots::{self, Axis, Panel, z_panel};
 use crate::report::{Artifact, ReportError};
+use drawing::Sheet;
 use graph::{Graph, Quantity};
 use numeric::digits::{count, counted, short};
 

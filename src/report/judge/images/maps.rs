@@ -5,9 +5,9 @@ use plotters::style::RGBAColor;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::record::Verdict;
-use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::sheet::{Align, Image, Sheet, Spot};
 use crate::report::plots::style::{DARK, GREY};
+use drawing::font::{Typeface, fit};
+use drawing::sheet::{Align, Image, Sheet, Spot};
 
 /// Length of the longer side of a map on the sheet.
 pub const MAX_SIDE: f64 = 480.0;

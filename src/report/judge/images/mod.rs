@@ -10,7 +10,7 @@ use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::record::Verdict;
 use crate::report::fields::{self, Table, table};
-use crate::report::render::palette;
+use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 
 pub use record::json;
@@ -20,8 +20,8 @@ pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, Rep
     let mut files = vec![Artifact::text("judgement.json", json(judgement)?)];
     if !judgement.tiles.is_empty() {
         files.push(fields::artifact("tiles.csv", &<&Tile>::fields(), &judgement.tiles)?);
-        files.push(palette::artifact("z-map", |face| z_map::compose(judgement, name, face))?);
-        files.push(palette::artifact("p-values", |face| p_values::compose(judgement, name, face))?);
+        files.push(plots::picture("z-map", |face| z_map::compose(judgement, name, face))?);
+        files.push(plots::picture("p-values", |face| p_values::compose(judgement, name, face))?);
     }
     Ok(files)
 }

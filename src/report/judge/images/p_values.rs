@@ -7,10 +7,10 @@
 use super::maps::{Dots, GAP, HEAD, Maps, smallest};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
-use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{COLOURS, GREY, ink};
 use crate::report::plots::{Axis, Panel};
+use drawing::font::{Typeface, fit};
+use drawing::sheet::{Align, Sheet};
 use numeric::digits::counted;
 
 /// Minimum and maximum number of bins of the histogram; between them one bin per ten tiles.

@@ -3,10 +3,10 @@
 use super::maps::{Dots, GAP, HEAD, Maps, dot};
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
-use crate::report::plots::font::Typeface;
-use crate::report::plots::sheet::Sheet;
 use crate::report::plots::style::DARK;
 use crate::report::render::colour;
+use drawing::font::Typeface;
+use drawing::sheet::Sheet;
 
 /// Number of standard errors at which colours end, to either side.
 const MAX_Z: f64 = 5.0;

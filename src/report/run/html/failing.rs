@@ -10,8 +10,9 @@ use crate::report::html::drawing;
 use crate::report::html::words;
 use crate::report::lists::grouped;
 use crate::report::plots::style::{GREY, Marker, ink};
-use crate::report::plots::{Axis, Panel, Sheet};
+use crate::report::plots::{Axis, Panel};
 use crate::report::run::failures::{self, Failure, failing};
+use ::drawing::Sheet;
 use gate::deviation::signed_percent;
 
 /// Maximum number of cards; the table has all failures.

@@ -6,7 +6,8 @@ use plotters::style::{Color, RGBAColor};
 use crate::record::Score;
 use crate::record::scores::{EDGE, Scores, WIDTH};
 use crate::report::plots::style::{DARK, GREY, ink};
-use crate::report::plots::{Axis, Panel, Sheet};
+use crate::report::plots::{Axis, Panel};
+use drawing::Sheet;
 use numeric::digits::short;
 
 const SIZE: [f64; 2] = [560.0, 132.0];

@@ -4,13 +4,14 @@
 
 use crate::record::{Best, Compared, CurvePoint, Row};
 use crate::report::lists::joined;
-use crate::report::plots::font::Typeface;
+use crate::report::plots::Panel;
 use crate::report::plots::legend::{self, Key};
 use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side, smallest_step};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{DARK, Marker, PAPER};
-use crate::report::plots::{Panel, Sheet};
 use crate::report::run::sweep_plot::names::{self, Course};
+use drawing::Sheet;
+use drawing::font::Typeface;
 use numeric::digits::short;
 use plotters::style::Color;
 

@@ -1,8 +1,8 @@
 //! Names of curves beside them, where they are apart: a reader need not look them up in the legend.
 
-use crate::report::plots::font::Typeface;
-use crate::report::plots::sheet::{Align, Sheet, Spot};
 use crate::report::plots::style::DARK;
+use drawing::font::Typeface;
+use drawing::sheet::{Align, Sheet, Spot};
 use plotters::style::RGBAColor;
 
 /// Size of a name.
@@ -109,8 +109,8 @@ fn darker(RGBAColor(red, green, blue, _): RGBAColor) -> RGBAColor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::plots::sheet::Shape;
     use crate::report::plots::style::COLOURS;
+    use drawing::sheet::Shape;
 
     fn course(name: &str, ends: [f64; 2]) -> Course {
         let spots = vec![[0.0, ends[0]], [400.0, ends[1]]];

@@ -4,13 +4,14 @@
 use plotters::style::Color;
 
 use crate::stress::narrow::{Along, Curve, Point};
+use drawing::Sheet;
+use drawing::font::fit;
+use drawing::sheet::Align;
 use trueflight::report::ReportError;
 use trueflight::report::plots::figure::{Figure, LEFT};
-use trueflight::report::plots::font::fit;
 use trueflight::report::plots::legend::{self, Entry, LINE};
-use trueflight::report::plots::sheet::Align;
 use trueflight::report::plots::style::{GREY, Style};
-use trueflight::report::plots::{Axis, Panel, Sheet};
+use trueflight::report::plots::{Axis, Panel};
 
 const TOP: f64 = 138.0;
 const PANEL: [f64; 2] = [400.0, 300.0];

@@ -3,7 +3,9 @@
 //! It is part of the program, so that plots look the same on machines without fonts. Its licence is beside it in
 //! `dejavu-sans.LICENSE.txt`.
 
-use ab_glyph::{Font, FontRef, InvalidFont, PxScale, ScaleFont, point};
+use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
+
+pub use ab_glyph::InvalidFont;
 
 /// Families that an SVG asks for: any sans-serif has the same letters at about the same widths.
 pub const FAMILY: &str = "DejaVu Sans, sans-serif";

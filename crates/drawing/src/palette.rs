@@ -2,24 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use crate::report::plots::Sheet;
-use crate::report::plots::font::Typeface;
-use crate::report::plots::paint;
-use crate::report::{Artifact, ReportError};
+use crate::{Sheet, paint};
 
 /// Maximum number of colours of a palette.
 const MAX_COLOURS: usize = 256;
 
-/// Returns a sheet as the file `NAME.png`.
-pub fn artifact(
-    name: &str,
-    compose: impl FnOnce(&Typeface) -> Sheet,
-) -> Result<Artifact, ReportError> {
-    let wrong = |message| ReportError::Draw { figure: name.to_owned(), message };
-    let face = Typeface::load().map_err(|error| wrong(error.to_string()))?;
-    let (rgb, size) = paint::pixels_of(&compose(&face)).map_err(wrong)?;
-    let bytes = encode(&rgb, size).map_err(|error| wrong(error.to_string()))?;
-    Ok(Artifact { path: format!("{name}.png").into(), bytes })
+/// Returns a sheet as the bytes of a PNG file.
+///
+/// # Errors
+///
+/// Why it could not be painted.
+pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
+    let (rgb, size) = paint::pixels_of(sheet)?;
+    encode(&rgb, size).map_err(|error| error.to_string())
 }
 
 /// Returns the bytes of a PNG file. Greys are rounded to every second one; if there are still more than 256 colours,

@@ -3,8 +3,8 @@
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::{Color, RGBAColor, RGBColor, ShapeStyle};
 
-use crate::report::plots::font::Typeface;
-use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot, strokes};
+use crate::font::Typeface;
+use crate::sheet::{Align, Image, Label, Shape, Sheet, Spot, strokes};
 
 /// Units of a pixel: a figure is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
 const UNITS: f64 = 3.0;
@@ -12,12 +12,20 @@ const UNITS: f64 = 3.0;
 const MAX_COORDINATE: f64 = 1e6;
 
 /// Returns the sheet as the bytes of a PNG file.
+///
+/// # Errors
+///
+/// Why it could not be painted.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
     let (rgb, size) = pixels_of(sheet)?;
     encode(&rgb, size, None).map_err(in_words)
 }
 
 /// Returns red, green and blue of the sheet's pixels row by row, with width and height.
+///
+/// # Errors
+///
+/// Why it could not be painted.
 pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     let face = Typeface::load().map_err(in_words)?;
     let [width, height] = [sheet.width, sheet.height].map(even);
@@ -113,6 +121,10 @@ fn halved(fine: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// Returns the bytes of a PNG file: red, green and blue of each pixel, or its index in a palette.
+///
+/// # Errors
+///
+/// The data does not fit the size.
 pub fn encode(
     data: &[u8],
     (width, height): (u32, u32),
@@ -161,7 +173,7 @@ fn in_words(error: impl std::fmt::Display) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::plots::style::DARK;
+    use crate::style::DARK;
 
     #[test]
     fn points_beyond_all_integers_are_painted() {
