@@ -173,7 +173,8 @@ fn in_words(error: impl std::fmt::Display) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::style::DARK;
+    /// Colour.
+    const DARK: RGBAColor = RGBAColor(34, 34, 34, 1.0);
 
     #[test]
     fn points_beyond_all_integers_are_painted() {
