@@ -71,7 +71,7 @@ pub mod record;
 pub mod render;
 pub mod report;
 
-pub use ::{checks, estimators, gate, media, numeric, theory};
+pub use ::{checks, drawing, estimators, gate, media, numeric, theory};
 pub use case::Catalogue;
 pub use estimators::{recipes, setup};
 pub use gate::stats;

@@ -138,7 +138,7 @@ fn drawn(cells: &[(String, f64)]) -> String {
             figure.sheet.area(spots, colour(name));
         }
         let sheet = &mut figure.sheet;
-        let centre = trueflight::report::plots::sheet::Align::Middle;
+        let centre = trueflight::drawing::sheet::Align::Middle;
         let dark = trueflight::report::plots::style::DARK;
         for (i, depth) in DEPTHS.iter().enumerate() {
             sheet.text(

@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 
 use crate::common::{case, none, options, shipped_plan};
 use trueflight::case::Case;
+use trueflight::drawing::Sheet;
+use trueflight::drawing::paint;
+use trueflight::drawing::sheet::{Align, Shape};
 use trueflight::plan::Plan;
 use trueflight::record::build;
 use trueflight::record::{CaseRecord, Record, Row};
-use trueflight::report::plots::Sheet;
 use trueflight::report::plots::series::{Series, collect};
-use trueflight::report::plots::sheet::{Align, Shape};
-use trueflight::report::plots::{paint, svg};
+use trueflight::report::plots::svg;
 use trueflight::report::run::sweep_plot;
 
 /// Sizes of the words of legends and of notes.
