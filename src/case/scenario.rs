@@ -410,7 +410,7 @@ impl<'a> At<'a> {
         if scenario.problem.fit(estimator, parts).is_err() {
             return 0.0;
         }
-        let largest = scenario.mesh().largest(|t, sigma| (sigma - control.extinction(t)).abs());
+        let largest = scenario.mesh().largest(&|t, sigma| (sigma - control.extinction(t)).abs());
         largest.map_or(0.0, |(_, size)| size)
     }
 

@@ -190,8 +190,8 @@ fn non_terminating_far_below_the_density_has_a_kurtosis_beyond_testing() {
 #[test]
 fn the_integrals_of_eq_21_on_the_central_ray() {
     let mesh = mesh("eq21");
-    let squares = mesh.integrate(|_, extinction| extinction * extinction);
-    let largest = mesh.largest(|_, extinction| extinction).expect("a support").1;
+    let squares = mesh.integrate(&|_, extinction| extinction * extinction);
+    let largest = mesh.largest(&|_, extinction| extinction).expect("a support").1;
     let depth = mesh.optical_depth().value;
     assert!((depth / 3.415_684_260_061_982_3 - 1.0).abs() < 1e-15);
     assert!((squares / 1.960_752_650_443_700_7 - 1.0).abs() < 1e-14);

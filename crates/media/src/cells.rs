@@ -95,7 +95,7 @@ impl Cells {
                 // The sum selects the cell: only rounding can end the search in a cell before the last.
                 return (index != last).then_some(to);
             }
-            Some(roots::root(from, to, |s| integral(index, Span::new(from, s)) - depth))
+            Some(roots::root(from, to, &|s| integral(index, Span::new(from, s)) - depth))
         };
         let head = integral(first, Span::new(span.from, self.ends[first + 1]));
         if first == last || depth < head {

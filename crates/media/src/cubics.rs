@@ -14,7 +14,7 @@
 //! whatever the rounding of its cubic: 0 is the minimum.
 
 use super::lattice::Track;
-use numeric::{Lane, Row, Span};
+use numeric::{Lane, Row, Span, sort};
 
 /// Cubics along a ray.
 pub struct Cubics {
@@ -47,7 +47,7 @@ impl Cubics {
                 plane += 1.0;
             }
         }
-        crossings.sort_by(f64::total_cmp);
+        sort::ascend(&mut crossings);
         let knots: Vec<f64> = std::iter::once(inside.from).chain(crossings).collect();
         let ends = knots[1..].iter().copied().chain(std::iter::once(inside.to));
         let row = |(&from, to): (&f64, f64)| {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 
+use super::lookup::Depths;
 use super::{Batches, Profile, Volume};
 use numeric::fused::in_fused_code;
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
@@ -76,14 +77,10 @@ pub trait Field: Send + Sync + 'static {
         0.0
     }
 
-    /// The optical depths of intervals of rays within the bounds, if these have one formula for every lane type.
-    /// Their bits are those of [`Self::along`].
-    #[inline(always)]
-    fn depths_along<L: Lane>(&self, rays: [[L; 3]; 2], interval: [L; 2]) -> Option<L>
-    where
-        Self: Sized,
-    {
-        let _ = (rays, interval);
+    /// The optical depths of intervals of rays within the bounds on the hardware of a level, if the field has one formula of
+    /// them for every lane type.
+    fn depths(&self, level: Level) -> Option<Box<dyn Depths + '_>> {
+        let _ = level;
         None
     }
 

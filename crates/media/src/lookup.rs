@@ -23,12 +23,6 @@ use numeric::{Lane, Pair};
 trait Formula<const N: usize>: Send + Sync {
     /// `σ_t` at a place.
     fn at<L: Lane>(&self, place: [L; N]) -> L;
-
-    /// See [`Field::depths_along`].
-    #[inline(always)]
-    fn depths<L: Lane>(&self, _: [[L; 3]; 2], _: [L; 2]) -> Option<L> {
-        None
-    }
 }
 
 /// A field at distances along a ray.
@@ -53,11 +47,6 @@ impl<F: Field> Formula<3> for Within<'_, F> {
             None => found,
         }
     }
-
-    #[inline(always)]
-    fn depths<L: Lane>(&self, rays: [[L; 3]; 2], interval: [L; 2]) -> Option<L> {
-        self.0.depths_along(rays, interval)
-    }
 }
 
 /// The lookups of one field on the hardware of one level. All have the bits of [`Batch::one`].
@@ -70,9 +59,6 @@ trait Batch<const N: usize>: Send + Sync {
 
     /// `σ_t` at the places of one pack.
     fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH];
-
-    /// See [`Batches::depths`].
-    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]>;
 }
 
 /// Lookups compiled for wide packs.
@@ -120,64 +106,48 @@ impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
             },
         )
     }
-
-    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
-        self.simd.vectorize(
-            #[inline(always)]
-            || {
-                let mut lanes = [f64x8::splat(self.simd, 0.0); 8];
-                for (number, row) in rays.iter().enumerate() {
-                    lanes[number] = f64x8::from_slice(self.simd, row);
-                }
-                let [a, b, c, x, y, z, from, to] = lanes;
-                let depths = self.formula.depths([[a, b, c], [x, y, z]], [from, to])?;
-                let mut found = [0.0; WIDTH];
-                depths.store_slice(&mut found);
-                Some(found)
-            },
-        )
-    }
 }
 
 /// Lookups of one place after the other, for hardware without wide packs.
 struct OneByOne<F>(F);
 
 impl<F> OneByOne<F> {
-    fn each<const N: usize, const M: usize>(&self, places: &[[f64; M]; N]) -> [f64; M]
+    fn each<const N: usize>(&self, rows: [&[f64]; N], found: &mut [f64])
     where
         F: Formula<N>,
     {
         in_fused_code(
             #[inline(always)]
             || {
-                let mut found = [0.0; M];
+                let mut place = [0.0; N];
                 for (lane, found) in found.iter_mut().enumerate() {
-                    *found = self.0.at(places.map(|row| row[lane]));
+                    for axis in 0..N {
+                        place[axis] = rows[axis][lane];
+                    }
+                    *found = self.0.at(place);
                 }
-                found
             },
-        )
+        );
     }
 }
 
 impl<const N: usize, F: Formula<N>> Batch<N> for OneByOne<F> {
     fn one(&self, place: [f64; N]) -> f64 {
-        in_fused_code(
-            #[inline(always)]
-            || self.0.at(place),
-        )
+        let mut found = [0.0];
+        self.each(place.each_ref().map(std::slice::from_ref), &mut found);
+        found[0]
     }
 
     fn pair(&self, places: &[[f64; PAIR_WIDTH]; N]) -> [f64; PAIR_WIDTH] {
-        self.each(places)
+        let mut found = [0.0; PAIR_WIDTH];
+        self.each(places.each_ref().map(<[f64; PAIR_WIDTH]>::as_slice), &mut found);
+        found
     }
 
     fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH] {
-        self.each(places)
-    }
-
-    fn depths(&self, _: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
-        None
+        let mut found = [0.0; WIDTH];
+        self.each(places.each_ref().map(<[f64; WIDTH]>::as_slice), &mut found);
+        found
     }
 }
 
@@ -199,6 +169,53 @@ impl<'a, const N: usize, F: Formula<N> + 'a> Task for Compile<'a, N, F> {
 
     fn run<S: Simd>(self, simd: S) -> Self::Output {
         Box::new(Compiled { formula: self.0, simd })
+    }
+}
+
+/// The optical depths of intervals of rays through a field, eight at a time.
+pub trait Depths: Send + Sync {
+    /// See [`Batches::depths`].
+    fn of(&self, rays: &[[f64; WIDTH]; 8]) -> [f64; WIDTH];
+}
+
+/// A field with one formula of optical depths for every lane type.
+pub trait DepthFormula: Send + Sync {
+    /// The optical depth of an interval of a ray within the bounds. The ray has an origin and a direction. Its bits are those of
+    /// [`Field::along`].
+    fn depth<L: Lane>(&self, ray: [[L; 3]; 2], interval: [L; 2]) -> L;
+}
+
+/// Compiles a formula of optical depths for the hardware of a level, if it has wide packs.
+pub fn depths<F: DepthFormula>(formula: &F, level: Level) -> Option<Box<dyn Depths + '_>> {
+    pack::on_wide(level, CompileDepths(formula)).ok()
+}
+
+struct CompileDepths<'a, F>(&'a F);
+
+impl<'a, F: DepthFormula> Task for CompileDepths<'a, F> {
+    type Output = Box<dyn Depths + 'a>;
+
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        Box::new(Compiled { formula: self.0, simd })
+    }
+}
+
+impl<F: DepthFormula, S: Simd> Depths for Compiled<&F, S> {
+    fn of(&self, rays: &[[f64; WIDTH]; 8]) -> [f64; WIDTH] {
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut lanes = [f64x8::splat(self.simd, 0.0); 8];
+                for (number, row) in rays.iter().enumerate() {
+                    lanes[number] = f64x8::from_slice(self.simd, row);
+                }
+                let [a, b, c, x, y, z, from, to] = lanes;
+                let depths = self.formula.depth([[a, b, c], [x, y, z]], [from, to]);
+                let mut found = [0.0; WIDTH];
+                depths.store_slice(&mut found);
+                found
+            },
+        )
     }
 }
 
@@ -291,6 +308,7 @@ impl Extinction for Lookups<'_> {
 /// A field in space for packets of walks: one indirect call returns σ_t at sixteen points.
 pub struct Batches<'a> {
     batch: Box<dyn Batch<3> + 'a>,
+    depths: Option<Box<dyn Depths + 'a>>,
     single_value: Option<f64>,
 }
 
@@ -300,7 +318,8 @@ impl<'a> Batches<'a> {
     pub fn new<F: Field>(field: &'a F, level: Level, clipped: bool) -> Self {
         let bounds = clipped.then(|| field.bounds()).filter(|&b| b != Bounds::Everywhere);
         let single_value = field.facts().single_value.filter(|_| bounds.is_none());
-        Self { batch: compiled(Within(field, bounds), level), single_value }
+        let batch = compiled(Within(field, bounds), level);
+        Self { batch, depths: field.depths(level), single_value }
     }
 
     /// `σ_t` at the points of two packs.
@@ -314,14 +333,14 @@ impl<'a> Batches<'a> {
 
     /// The optical depths of eight intervals of rays within the bounds. `rays` has the coordinates of origins and
     /// of directions, and the begins and ends of the intervals. `None` where the field has no formula for lanes,
-    /// see [`Field::depths_along`].
+    /// see [`Field::depths`].
     #[inline(always)]
     pub fn depths<L: Lane>(&self, rays: &[L; 8]) -> Option<L> {
+        let depths = self.depths.as_ref()?;
         let mut rows = [[0.0; WIDTH]; 8];
         for (number, row) in rows.iter_mut().enumerate() {
             rays[number].store(row);
         }
-        let depths = self.batch.depths(&rows)?;
-        Some(rays[0].load(&depths))
+        Some(rays[0].load(&depths.of(&rows)))
     }
 }

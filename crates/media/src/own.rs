@@ -104,7 +104,8 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
         change(here) > share.max(16.0 * f64::EPSILON * here.whole[0])
     };
     let on = |part: Span| panel(&f, part);
-    let found = halve(Span::between(&cuts), LIMITS, on, |here, scale| !is_rough(here, scale));
+    let found =
+        halve(&mut Span::between(&cuts), LIMITS, &on, &|here, scale| !is_rough(here, scale));
     let (mut value, mut error) = (Sum::default(), Sum::default());
     for here in &found {
         value.add(here.value()[0]);

@@ -20,6 +20,9 @@
 
 use std::sync::Arc;
 
+use fearless_simd::Level;
+
+use super::lookup::{self, DepthFormula, Depths};
 use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader};
 use crate::catalogue::{Domain, Settings};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
@@ -162,6 +165,14 @@ fn read_volume(settings: &Settings) -> Option<Radial> {
     Some(field)
 }
 
+impl DepthFormula for Radial {
+    #[inline(always)]
+    fn depth<L: Lane>(&self, ray: [[L; 3]; 2], [from, to]: [L; 2]) -> L {
+        let length = (to - from).or_more(to.each(0.0));
+        self.chord(ray).integral((from + to) * 0.5, length * 0.5)
+    }
+}
+
 impl Field for Radial {
     fn bounds(&self) -> Bounds {
         Bounds::Sphere { centre: self.centre, radius: self.radius }
@@ -192,10 +203,8 @@ impl Field for Radial {
         Arc::new(self.chord([ray.origin.0, ray.direction.0]))
     }
 
-    #[inline(always)]
-    fn depths_along<L: Lane>(&self, rays: [[L; 3]; 2], [from, to]: [L; 2]) -> Option<L> {
-        let length = (to - from).or_more(to.each(0.0));
-        Some(self.chord(rays).integral((from + to) * 0.5, length * 0.5))
+    fn depths(&self, level: Level) -> Option<Box<dyn Depths + '_>> {
+        lookup::depths(self, level)
     }
 
     fn facts(&self) -> Facts<'_> {

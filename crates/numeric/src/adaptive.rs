@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::Span;
+use crate::{Span, sort};
 
 /// Limits of halving.
 #[derive(Debug, Clone, Copy)]
@@ -42,18 +42,20 @@ impl<const N: usize> Halved<N> {
 ///
 /// `rule` integrates over a panel. `is_fine` is given a panel and the sums of the absolute values of all integrals over
 /// the first panels.
+///
+/// Compiled once for each number of integrals: integrands are dear beside a call through a reference.
 pub fn halve<const N: usize>(
-    first: impl Iterator<Item = Span>,
+    first: &mut dyn Iterator<Item = Span>,
     limits: Limits,
-    rule: impl Fn(Span) -> [f64; N],
-    is_fine: impl Fn(&Halved<N>, &[f64; N]) -> bool,
+    rule: &dyn Fn(Span) -> [f64; N],
+    is_fine: &dyn Fn(&Halved<N>, &[f64; N]) -> bool,
 ) -> Vec<Halved<N>> {
     let mut open: VecDeque<_> = first.map(|span| (span, rule(span), 0)).collect();
     let scale = std::array::from_fn(|i| open.iter().map(|(_, whole, _)| whole[i].abs()).sum());
     let mut kept = Vec::with_capacity(open.len());
     while let Some((span, whole, halvings)) = open.pop_front() {
         let parts = span.halves();
-        let here = Halved { span, whole, halves: parts.map(&rule) };
+        let here = Halved { span, whole, halves: parts.map(rule) };
         let has_room = halvings < limits.halvings
             && kept.len() + open.len() + 2 <= limits.panels
             && span.contains_inside(span.middle());
@@ -65,8 +67,8 @@ pub fn halve<const N: usize>(
             open.push_back((part, whole, halvings + 1));
         }
     }
-    kept.sort_by(|a, b| a.span.from.total_cmp(&b.span.from));
-    kept
+    let begins: Vec<f64> = kept.iter().map(|part| part.span.from).collect();
+    sort::ascending_places(&begins).into_iter().map(|place| kept[place]).collect()
 }
 
 #[cfg(test)]
@@ -79,10 +81,10 @@ mod tests {
         let rule = GaussLegendre::new(8);
         let limits = Limits { halvings: 60, panels: 1000 };
         let found = halve(
-            Span::between(&[0.0, 0.5, 1.0]),
+            &mut Span::between(&[0.0, 0.5, 1.0]),
             limits,
-            |span| [rule.integrate(span.from, span.to, f64::sqrt)],
-            |here, [scale]| here.change()[0].abs() <= 1e-15 * scale,
+            &|span| [rule.integrate(span.from, span.to, f64::sqrt)],
+            &|here, [scale]| here.change()[0].abs() <= 1e-15 * scale,
         );
         let value: f64 = found.iter().map(|here| here.value()[0]).sum();
         assert!((value - 2.0 / 3.0).abs() < 1e-14, "{value}");
@@ -93,7 +95,7 @@ mod tests {
     #[test]
     fn a_rule_that_is_never_satisfied_ends_at_the_limit() {
         for limits in [Limits { halvings: 3, panels: 100 }, Limits { halvings: 60, panels: 8 }] {
-            let found = halve(Span::between(&[0.0, 1.0]), limits, |_| [1.0], |_, _| false);
+            let found = halve(&mut Span::between(&[0.0, 1.0]), limits, &|_| [1.0], &|_, _| false);
             assert_eq!(found.len(), 8);
             assert!(found.iter().all(|here| here.span.length() == 0.125));
         }

@@ -178,7 +178,7 @@ impl Span {
     pub fn cut(self, mut places: Vec<f64>) -> Vec<f64> {
         places.retain(|&t| self.contains_inside(t));
         places.extend([self.from, self.to]);
-        places.sort_by(f64::total_cmp);
+        crate::sort::ascend(&mut places);
         places.dedup();
         places
     }

@@ -1,10 +1,12 @@
 //! Roots and minima of functions of one variable.
+//!
+//! What draws do not wait for takes a function by reference, and is compiled once for all of them.
 
 /// The root of a function that changes sign on `[low, high]`, by bisection with secant steps
 /// (regula falsi in the Illinois form), to the last bits of the bracket.
 ///
 /// Where both ends have one sign, the end with the smaller absolute value is returned.
-pub fn root(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+pub fn root(mut low: f64, mut high: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     let (mut f_low, mut f_high) = (f(low), f(high));
     if f_low == 0.0 || (f_low > 0.0) == (f_high > 0.0) && f_low.abs() < f_high.abs() {
         return low;
@@ -77,7 +79,7 @@ pub fn rising_from(
 /// wide.
 ///
 /// Source: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953), 502–506.
-pub fn minimum(mut low: f64, mut high: f64, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+pub fn minimum(mut low: f64, mut high: f64, tolerance: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_9;
     let mut left = high - SECTION * (high - low);
     let mut right = low + SECTION * (high - low);
@@ -105,7 +107,7 @@ pub fn least(
     [mut low, start, mut high]: [f64; 3],
     at_start: f64,
     tolerance: f64,
-    mut f: impl FnMut(f64) -> f64,
+    f: &mut dyn FnMut(f64) -> f64,
 ) -> (f64, f64) {
     const SECTION: f64 = 0.381_966_011_250_105_1;
     // The best place with its value, the second, and the one before that.
@@ -164,9 +166,9 @@ mod tests {
 
     #[test]
     fn finds_a_root_to_the_last_bits() {
-        let x = root(0.0, 3.0, |x| x * x - 2.0);
+        let x = root(0.0, 3.0, &|x| x * x - 2.0);
         assert!((x - 2.0f64.sqrt()).abs() < 1e-15);
-        assert_eq!(root(0.0, 1.0, |x| x), 0.0);
+        assert_eq!(root(0.0, 1.0, &|x| x), 0.0);
     }
 
     #[test]
@@ -195,22 +197,22 @@ mod tests {
     #[test]
     fn finds_the_least_value_in_few_steps_and_stays_off_cliffs() {
         let mut asked = 0;
-        let smooth = |x: f64| {
+        let mut smooth = |x: f64| {
             asked += 1;
             x.exp() - 2.0 * x
         };
-        let (x, value) = least([0.0, 0.5, 2.0], 0.5f64.exp() - 1.0, 1e-7, smooth);
+        let (x, value) = least([0.0, 0.5, 2.0], 0.5f64.exp() - 1.0, 1e-7, &mut smooth);
         let ln = 2f64.ln();
         assert!((x - ln).abs() < 1e-7 && (value - (2.0 - 2.0 * ln)).abs() < 1e-14, "{x} {value}");
         assert!(asked <= 15, "{asked}");
-        let cliff = |x: f64| if x < 1.0 { 0.0 } else { -1.0 / x };
-        let (x, value) = least([0.0, 1.5, 3.0], -1.0 / 1.5, 1e-7, cliff);
+        let mut cliff = |x: f64| if x < 1.0 { 0.0 } else { -1.0 / x };
+        let (x, value) = least([0.0, 1.5, 3.0], -1.0 / 1.5, 1e-7, &mut cliff);
         assert!((1.0..1.0 + 1e-6).contains(&x) && value == cliff(x), "{x} {value}");
     }
 
     #[test]
     fn finds_a_minimum() {
-        let x = minimum(-3.0, 9.0, 1e-9, |x| (x - 1.5).powi(2));
+        let x = minimum(-3.0, 9.0, 1e-9, &|x| (x - 1.5).powi(2));
         assert!((x - 1.5).abs() < 1e-7);
     }
 }

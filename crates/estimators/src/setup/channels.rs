@@ -93,7 +93,7 @@ pub fn require_common(channels: &[ChannelFields]) -> Result<(), Refusal> {
 /// The channel, and the distance of the largest violation.
 pub fn require_majorants(channels: &[ChannelFields]) -> Result<(), Refusal> {
     for (number, channel) in (1..).zip(channels) {
-        let worst = channel.mesh.largest(|_, sigma| sigma);
+        let worst = channel.mesh.largest(&|_, sigma| sigma);
         if let Some((at, sigma)) = worst.filter(|&(_, s)| s > channel.majorant * (1.0 + 1e-12)) {
             let [majorant, sigma] = [channel.majorant, sigma].map(rounded);
             return Err(Refusal::Inequality {
@@ -175,7 +175,7 @@ impl Room<'_> {
                 format!("{stretch} in channel {number} on a stretch, which biases the others,");
             return Err(Refusal::Inequality { needs, found, at: panel.span.from });
         }
-        let touches = cut.peaks(|t| -beside(t)).into_iter().find(|&(_, found)| -found <= TOUCHES);
+        let touches = cut.peaks(&|t| -beside(t)).into_iter().find(|&(_, found)| -found <= TOUCHES);
         if let Some((at, _)) = touches {
             let found = format!("{touch} in channel {number}: E[X²] is infinite");
             return Err(Refusal::Inequality { needs: "a finite variance", found, at });

@@ -126,7 +126,7 @@ impl ControlledLine {
             if sampling > 0.0 { rule.outcome(residual / sampling).weight.abs() } else { 0.0 }
         };
         let cut = self.mesh.refined(&cuts, &|_, _| Vec::new());
-        let Some((_, largest)) = cut.largest(factor).filter(|&(_, largest)| largest > 1.0) else {
+        let Some((_, largest)) = cut.largest(&factor).filter(|&(_, largest)| largest > 1.0) else {
             return Ok(());
         };
         let collisions = self.sampling.whole_depth();

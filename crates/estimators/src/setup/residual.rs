@@ -63,7 +63,7 @@ impl Residual<'_> {
         let empty = self.sampling.knots().windows(2).map(|ends| Span::new(ends[0], ends[1]));
         let blind =
             empty.filter(|span| self.sampling.value(span.middle()) <= 0.0).find_map(|span| {
-                let residual = cut.largest(|t, sigma| {
+                let residual = cut.largest(&|t, sigma| {
                     if span.contains_inside(t) { self.at(t, sigma).abs() } else { 0.0 }
                 });
                 residual.filter(|&(_, size)| size > 0.0)
@@ -107,8 +107,8 @@ impl Residual<'_> {
             return Ok(());
         }
         let cut = self.mesh.refined(&self.control.breaks(), &|_, _| Vec::new());
-        let worst = cut.largest(|t, sigma| -self.at(t, sigma));
-        let scale = cut.largest(|_, sigma| sigma).map_or(0.0, |(_, largest)| largest);
+        let worst = cut.largest(&|t, sigma| -self.at(t, sigma));
+        let scale = cut.largest(&|_, sigma| sigma).map_or(0.0, |(_, largest)| largest);
         match worst {
             Some((at, deficit)) if deficit > SLACK * scale => Err(Refusal::Inequality {
                 needs,
@@ -148,7 +148,7 @@ impl Residual<'_> {
             let residual = self.at(t, sigma);
             if residual == 0.0 { 0.0 } else { residual / self.sampling.value(t) }
         };
-        let worst = cut.largest(|t, sigma| ratio(t, sigma) / limit(t));
+        let worst = cut.largest(&|t, sigma| ratio(t, sigma) / limit(t));
         match worst {
             Some((at, excess)) if excess > 1.0 + SLACK => {
                 let sampling = self.sampling.value(at);

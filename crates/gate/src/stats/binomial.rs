@@ -45,7 +45,7 @@ fn end(k: f64, n: f64, tail: f64, tail_of: fn(f64, f64, Chance) -> f64) -> f64 {
         far += outwards;
     }
     let (low, high) = (far.min(far - outwards), far.max(far - outwards));
-    Chance::of_logit(roots::root(low, high, excess)).p
+    Chance::of_logit(roots::root(low, high, &excess)).p
 }
 
 /// A probability and its complement, neither of them rounded away.

@@ -163,7 +163,7 @@ fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
     let &InField { ref lit, scale, shadow_scale, kind, held, count } = choices;
     let problem = lit.problem().filter(|problem| !problem.medium().support().is_empty())?;
     let medium = problem.medium();
-    let largest = Mesh::new(medium.clone()).largest(|_, sigma| sigma);
+    let largest = Mesh::new(medium.clone()).largest(&|_, sigma| sigma);
     let largest = largest.map_or(1.0, |(_, largest)| largest);
     let most = problem.shadow_majorant();
     let tracking = match kind % 3 {

@@ -58,7 +58,7 @@ fn shares(case: &Shared, seen: &mut Seen) -> Option<()> {
     let &Shared { lit, scale, heuristic, has_nulls } = case;
     let problem = lit.problem().filter(|problem| !problem.medium().support().is_empty())?;
     let (medium, mesh) = (problem.medium(), Mesh::new(problem.medium().clone()));
-    let largest = mesh.largest(|_, sigma| sigma).map_or(1.0, |(_, largest)| largest);
+    let largest = mesh.largest(&|_, sigma| sigma).map_or(1.0, |(_, largest)| largest);
     let sampling = &Piecewise::constant(scale * largest, mesh.support());
     let along = if has_nulls { CameraTracking::Ratio } else { CameraTracking::Exact };
     let camera = Camera::new(&mesh, sampling, &Control::None, along);

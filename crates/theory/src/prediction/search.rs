@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::f64::consts::{LN_2, LN_10};
 
-use numeric::roots;
+use numeric::{roots, sort};
 
 /// Share of the least value by which a place near a limit may exceed it.
 pub const ABOVE_LIMIT: f64 = 0.05;
@@ -116,7 +116,7 @@ impl<'a> Goal<'a> {
 
     /// Returns `ln x` of the least value between three, and the value.
     pub fn between(&self, around: [f64; 3]) -> (f64, f64) {
-        roots::least(around, self.at(around[1]), self.tolerance, |log| self.at(log))
+        roots::least(around, self.at(around[1]), self.tolerance, &mut |log| self.at(log))
     }
 
     /// Returns three `ln x` around the least value of places that are apart by a factor of two, `reach` on each side of
@@ -161,7 +161,7 @@ impl<'a> Goal<'a> {
         let is_steep = value < BEYOND && self.known.borrow().iter().any(is_steep);
         let (log, value) = if is_steep {
             let around = [log - 2.0 * self.tolerance, log, log + 2.0 * self.tolerance];
-            roots::least(around, value, 0.02 * self.tolerance, |log| self.at(log))
+            roots::least(around, value, 0.02 * self.tolerance, &mut |log| self.at(log))
         } else {
             (log, value)
         };
@@ -197,7 +197,10 @@ impl<'a> Goal<'a> {
         let (from, furthest) = (x.ln(), furthest.ln());
         let mut beyond: Vec<f64> = self.known.borrow().iter().map(|known| known[0]).collect();
         beyond.retain(|log| sign * (log - from) > 0.0);
-        beyond.sort_by(|a, b| (sign * a).total_cmp(&(sign * b)));
+        sort::ascend(&mut beyond);
+        if sign < 0.0 {
+            beyond.reverse();
+        }
         let inside = beyond.iter().take_while(|log| self.at(**log) <= level).count();
         let mut outside = beyond.get(inside).copied();
         let mut inside = if inside > 0 { beyond[inside - 1] } else { from };

@@ -90,7 +90,7 @@ fn over<const N: usize>(offsets: &[f64], f: impl Fn(f64) -> [f64; N]) -> [Known;
         here.change().iter().zip(scale).all(|(change, scale)| change.abs() <= AGREED * scale)
     };
     let mut found = [Known::estimated(0.0, 0.0); N];
-    for here in halve(Span::between(offsets), LIMITS, panel, is_fine) {
+    for here in halve(&mut Span::between(offsets), LIMITS, &panel, &is_fine) {
         for (i, known) in found.iter_mut().enumerate() {
             *known = *known + Known::estimated(here.value()[i], here.change()[i].abs());
         }

@@ -5,7 +5,7 @@ mod even;
 use media::Medium;
 use numeric::quadrature::{GaussLegendre, dot, legendre};
 use numeric::sum::Sum;
-use numeric::{Known, Span, roots};
+use numeric::{Known, Span, roots, sort};
 use std::ops::Range;
 
 /// Nodes per panel, unless the medium needs fewer.
@@ -174,7 +174,7 @@ impl Mesh {
     #[must_use]
     pub fn refined(&self, cuts: &[f64], smooth: &Functions<'_>) -> Self {
         let mut cuts = cuts.to_vec();
-        cuts.sort_by(f64::total_cmp);
+        sort::ascend(&mut cuts);
         let mut fine = Self {
             medium: self.medium.clone(),
             rule: self.rule.clone(),
@@ -229,7 +229,7 @@ impl Mesh {
     ) -> Vec<f64> {
         if !self.is_coarse {
             let cut = self.cut(&cuts);
-            cuts.extend(kinks.into_iter().flat_map(|kink| cut.roots(kink)));
+            cuts.extend(kinks.into_iter().flat_map(|kink| cut.roots(&kink)));
         }
         cuts.retain(|&t| self.support().contains_inside(t));
         cuts
@@ -240,15 +240,13 @@ impl Mesh {
     pub fn joint_cuts<const N: usize>(
         meshes: &[&Self],
         mut cuts: Vec<f64>,
-        rates: impl Fn(usize, f64) -> [f64; N],
+        rates: &dyn Fn(usize, f64) -> [f64; N],
     ) -> Vec<f64> {
         cuts.extend(meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from)));
         let pairs = (0..meshes.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
         let crossed = pairs.flat_map(|[i, j]| (0..N).map(move |event| [i, j, event]));
-        let apart = crossed.map(|[i, j, event]| {
-            let rates = &rates;
-            move |t: f64, _: f64| rates(i, t)[event] - rates(j, t)[event]
-        });
+        let apart = crossed
+            .map(|[i, j, event]| move |t: f64, _: f64| rates(i, t)[event] - rates(j, t)[event]);
         meshes[0].cuts(cuts, apart)
     }
 
@@ -327,8 +325,8 @@ impl Mesh {
     }
 
     /// `∫ f(t, σ_t)` over the support.
-    pub fn integrate(&self, mut f: impl FnMut(f64, f64) -> f64) -> f64 {
-        self.integrate_nodes(|node| f(self.t[node], self.extinction[node]))
+    pub fn integrate(&self, f: &dyn Fn(f64, f64) -> f64) -> f64 {
+        self.integrate_nodes(&|node| f(self.t[node], self.extinction[node]))
     }
 
     /// Panels with the numbers of their nodes.
@@ -338,10 +336,10 @@ impl Mesh {
     }
 
     /// `∫ f` over the support, from values at nodes by their numbers.
-    pub fn integrate_nodes(&self, mut f: impl FnMut(usize) -> f64) -> f64 {
+    pub fn integrate_nodes(&self, f: &dyn Fn(usize) -> f64) -> f64 {
         let mut sum = Sum::default();
         for (panel, nodes) in self.numbered() {
-            sum.add(self.integral(panel, &nodes.map(&mut f).collect::<Vec<f64>>()));
+            sum.add(self.integral(panel, &nodes.map(f).collect::<Vec<f64>>()));
         }
         sum.value()
     }
@@ -357,11 +355,11 @@ impl Mesh {
         if exact == 0.0 {
             return 1e-13;
         }
-        1e-13 + ((self.integrate(|_, sigma| sigma) - exact) / exact).abs()
+        1e-13 + ((self.integrate(&|_, sigma| sigma) - exact) / exact).abs()
     }
 
     /// The distances at which `f(t, σ_t)` changes sign.
-    pub fn roots(&self, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    pub fn roots(&self, f: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
         let mut found = Vec::new();
         let at = |t: f64| f(t, self.medium.extinction(t));
         for (i, panel) in self.panels().enumerate() {
@@ -370,7 +368,7 @@ impl Mesh {
                 let value = f(t, sigma);
                 match last {
                     Some((before, old)) if (old < 0.0) != (value < 0.0) => {
-                        found.push(roots::root(before, t, at));
+                        found.push(roots::root(before, t, &at));
                     }
                     _ => {}
                 }
@@ -383,7 +381,7 @@ impl Mesh {
             let node = |i: usize| (panel.t[i], panel.extinction[i]);
             for [a, b] in [[(low, sigma_first), node(0)], [node(end), (high, sigma_last)]] {
                 if a.0 < b.0 && (f(a.0, a.1) < 0.0) != (f(b.0, b.1) < 0.0) {
-                    found.push(roots::root(a.0, b.0, at));
+                    found.push(roots::root(a.0, b.0, &at));
                 }
             }
         }
@@ -392,12 +390,12 @@ impl Mesh {
 
     /// Position and value of the maximum of `f(t, σ_t)`: the best node, then a search between the nodes beside it.
     /// `None` on an empty support.
-    pub fn largest(&self, f: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
+    pub fn largest(&self, f: &dyn Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
         self.largest_in(self.support(), f)
     }
 
     /// Maximum of `f(t, σ_t)` over a part of the support that begins and ends with panels.
-    pub fn largest_in(&self, span: Span, f: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
+    pub fn largest_in(&self, span: Span, f: &dyn Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
         let (from, to) =
             (self.t.partition_point(|&t| t < span.from), self.t.partition_point(|&t| t <= span.to));
         let best = (from..to)
@@ -410,14 +408,14 @@ impl Mesh {
         let before = if index == 0 { inside.from } else { self.t[index - 1].max(inside.from) };
         let after = self.t.get(index + 1).map_or(inside.to, |t| t.min(inside.to));
         let at = |t: f64| f(t, self.medium.extinction(t));
-        let peak = roots::minimum(before, after, 1e-9 * panel.length(), |t| -at(t));
+        let peak = roots::minimum(before, after, 1e-9 * panel.length(), &|t| -at(t));
         let candidates =
             [(self.t[index], at_node), (peak, at(peak)), (before, at(before)), (after, at(after))];
         candidates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Every local maximum of a function, and its values at both ends of each panel: distances and values.
-    pub fn peaks(&self, f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    pub fn peaks(&self, f: &dyn Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let mut peaks = Vec::new();
         for Panel { span, t, .. } in self.panels() {
             let edge = 1e-12 * span.length();
@@ -432,7 +430,7 @@ impl Mesh {
                 if values[here] >= values[before] && values[here] >= values[after] {
                     let tolerance = 1e-9 * span.length();
                     let [from, to] = [places[before], places[after]];
-                    let peak = roots::minimum(from, to, tolerance, |t| -f(t));
+                    let peak = roots::minimum(from, to, tolerance, &|t| -f(t));
                     peaks.extend([(places[here], values[here]), (peak, f(peak))]);
                 }
             }

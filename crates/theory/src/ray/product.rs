@@ -144,7 +144,7 @@ impl<'a> Product<'a> {
             rate - 2.0 * extinction * (1.0 + 1e-12)
         };
         let length = mesh.support().length();
-        let cut = mesh.cut(&mesh.roots(excess));
+        let cut = mesh.cut(&mesh.roots(&excess));
         let stable = cut.panels().filter(|panel| {
             let middle = panel.t.len() / 2;
             excess(panel.t[middle], panel.extinction[middle]) <= 0.0

@@ -235,7 +235,7 @@ impl Importance {
 
 impl Flow<'_> {
     /// Solves the equations with given sources, where leaving at the beginning and at the end scores `ends`.
-    pub fn solve(&self, source: impl Fn(usize, &Node) -> [f64; 2], ends: [f64; 2]) -> Importance {
+    pub fn solve(&self, source: &dyn Fn(usize, &Node) -> [f64; 2], ends: [f64; 2]) -> Importance {
         let Layers { layers, beyond } = self.layers;
         let mut inputs = vec![[0.0; 2 * ROWS]; layers.len()];
         // m₊ = ρ m₋ + η at the beginning of each layer, from the end of the rod backwards.

@@ -32,8 +32,8 @@ const END: [f64; 2] = [0.0, 1.0];
 /// `E[X^k]` of a channel; a flux is the mean in parts of a width.
 pub fn power(line: &Line, quantity: Quantity, width: f64, k: i32) -> Option<f64> {
     let worth = match quantity {
-        Quantity::Reflected => line.flow(k)?.solve(nothing, BEGINNING),
-        Quantity::Transmitted => line.flow(k)?.solve(nothing, END),
+        Quantity::Reflected => line.flow(k)?.solve(&nothing, BEGINNING),
+        Quantity::Transmitted => line.flow(k)?.solve(&nothing, END),
         Quantity::ReflectedBy(order) => by_order(line, k, BEGINNING, order)?,
         Quantity::TransmittedBy(order) => by_order(line, k, END, order)?,
         Quantity::Absorbed => score_times(line, &absorbed, k, None)?.pop()?,
@@ -51,13 +51,13 @@ pub fn power(line: &Line, quantity: Quantity, width: f64, k: i32) -> Option<f64>
 
 fn by_order(line: &Line, k: i32, ends: [f64; 2], order: usize) -> Option<Importance> {
     let flow = line.straight(k)?;
-    let mut worth = flow.solve(nothing, ends);
+    let mut worth = flow.solve(&nothing, ends);
     for _ in 0..order {
         let source = |i: usize, node: &Node| {
             let scattered = node.kernel(k).scattering();
             node.spread(worth.at(i)).map(|spread| scattered * spread)
         };
-        worth = flow.solve(source, [0.0; 2]);
+        worth = flow.solve(&source, [0.0; 2]);
     }
     Some(worth)
 }
@@ -77,7 +77,7 @@ fn score_times(
     end: Option<([f64; 2], i32)>,
 ) -> Option<Vec<Importance>> {
     let (first, k) = match end {
-        Some((ends, k)) => (line.flow(k)?.solve(nothing, ends), k),
+        Some((ends, k)) => (line.flow(k)?.solve(&nothing, ends), k),
         None => (line.one(), 0),
     };
     let mut found = vec![first];
@@ -97,7 +97,7 @@ fn score_times(
             }
             sum
         };
-        let worth = line.flow(power + k)?.solve(source, [0.0; 2]);
+        let worth = line.flow(power + k)?.solve(&source, [0.0; 2]);
         found.push(worth);
     }
     Some(found)
@@ -117,12 +117,12 @@ pub fn joint(line: &Line) -> Option<Joint> {
 
 /// The factorial moments `E[M(M − 1)…(M − n + 1)]` of the number of lookups, n = 1 … 4.
 pub fn lookups(line: &Line) -> Option<[f64; 4]> {
-    lookups_with(line, |_| [1.0, 0.0, 0.0, 0.0, 0.0])
+    lookups_with(line, &|_| [1.0, 0.0, 0.0, 0.0, 0.0])
 }
 
 /// The factorial moments of the number of lookups, given those of the K further lookups of a scattering at each node,
 /// n = 0 … 4. The further ones add `σ̂ S₀ Σⱼ (n over j) E[K(K − 1)…(K − j + 1)]` times the moment n − j to a source.
-pub fn lookups_with(line: &Line, further: impl Fn(usize) -> [f64; 5]) -> Option<[f64; 4]> {
+pub fn lookups_with(line: &Line, further: &dyn Fn(usize) -> [f64; 5]) -> Option<[f64; 4]> {
     let flow = line.flow(0)?;
     let mut found: Vec<Importance> = Vec::new();
     for n in 1..=4_usize {
@@ -146,7 +146,7 @@ pub fn lookups_with(line: &Line, further: impl Fn(usize) -> [f64; 5]) -> Option<
                 node.sampling * (kernel.scattered * own[d] + n as f64 * later)
             })
         };
-        found.push(flow.solve(source, [0.0; 2]));
+        found.push(flow.solve(&source, [0.0; 2]));
     }
     Some(std::array::from_fn(|n| found[n].entering))
 }

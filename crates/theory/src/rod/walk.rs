@@ -111,7 +111,7 @@ impl<'a> Walk<'a> {
         let mut kinks = Vec::new();
         for kink in 0..rule.kinks(1.0).len() {
             let ratio = |t: f64| rule.kinks(rod.albedo.value(t))[kink];
-            kinks.extend(walk.mesh.roots(|t, sigma| sigma - ratio(t) * sampling.value(t)));
+            kinks.extend(walk.mesh.roots(&|t, sigma| sigma - ratio(t) * sampling.value(t)));
         }
         // Added to σ̂, so that nothing but rounding is no function that no panel resolves.
         let smooth = |_: &Mesh, panel: Panel<'_>| {
@@ -220,7 +220,7 @@ impl<'a> Walk<'a> {
             let part = self.on(vec![(Span::new(span.from, t), t - span.from)], -ROUNDING);
             part.reflection(k).map_or(-1.0, |next| 1.0 - passed * next)
         };
-        Some(roots::root(span.from, span.to, echo))
+        Some(roots::root(span.from, span.to, &echo))
     }
 
     /// Numbers of a line with powers up to a highest, each with an absolute error; `None` where it has no answer.

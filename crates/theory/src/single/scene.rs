@@ -8,7 +8,7 @@ use crate::problems::{Problem, SingleScattering};
 use numeric::adaptive::{Halved, Limits, halve};
 use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
-use numeric::{Known, Span};
+use numeric::{Known, Span, sort};
 
 /// Relative difference of two resolutions of L at which panels are fine enough.
 const RADIANCE: f64 = 2e-14;
@@ -221,11 +221,11 @@ impl<'a> Scene<'a> {
         s.retain(|&s| support.contains_inside(s));
         s.extend([support.from, support.to]);
         let mut x: Vec<f64> = s.into_iter().map(|s| self.unstretched(s)).collect();
-        x.sort_by(f64::total_cmp);
+        sort::ascend(&mut x);
         let cuts = |span: Span| span.even_cuts((span.length() / WIDEST).ceil());
         let further: Vec<f64> = Span::between(&x).flat_map(cuts).collect();
         x.extend(further);
-        x.sort_by(f64::total_cmp);
+        sort::ascend(&mut x);
         x.dedup();
         x
     }
@@ -289,7 +289,7 @@ impl<'a> Scene<'a> {
             let change = here.change();
             !(0..N).any(|i| change[i].abs() > parts[i].max(least) * scale[i])
         };
-        let found = halve(Span::between(&ends), LIMITS, |x| self.panel(x, f), is_fine);
+        let found = halve(&mut Span::between(&ends), LIMITS, &|x| self.panel(x, f), &is_fine);
         let [mut sums, mut signed] = [[Sum::default(); N]; 2];
         let [mut error, mut squares] = [[0.0; N]; 2];
         for here in &found {

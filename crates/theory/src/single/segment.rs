@@ -181,14 +181,14 @@ fn along<const N: usize>(
     rule: &GaussLegendre,
     f: impl Fn(f64, f64) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
-    along_all(std::slice::from_ref(medium), rule, |t, sigma| f(t, sigma[0]))
+    along_all(std::slice::from_ref(medium), rule, &|t, sigma| f(t, sigma[0]))
 }
 
 /// `∫ f(t, σ_t)` for several media with one support.
 pub fn along_all<const N: usize>(
     media: &[Medium],
     rule: &GaussLegendre,
-    f: impl Fn(f64, &[f64]) -> [f64; N],
+    f: &dyn Fn(f64, &[f64]) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
     let support = media[0].support();
     let (ends, is_thinned) = thinned(support.cut(media.iter().flat_map(Medium::breaks).collect()));
@@ -207,7 +207,7 @@ pub fn along_all<const N: usize>(
         here.change().iter().zip(scale).all(|(x, scale)| x.abs() <= AGREED * scale.max(1.0))
     };
     let [mut value, mut change] = [[0.0; N]; 2];
-    for here in halve(Span::between(&ends), limits, over, is_fine) {
+    for here in halve(&mut Span::between(&ends), limits, &over, &is_fine) {
         value.iter_mut().zip(here.value()).for_each(|(sum, x)| *sum += x);
         change.iter_mut().zip(here.change()).for_each(|(sum, x)| *sum += x);
     }

@@ -108,7 +108,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
     let mut knots = cut.medium().breaks();
     knots.extend(sampling.knots());
     let passed = |&ratio: &f64| {
-        cut.roots(|t, sigma| {
+        cut.roots(&|t, sigma| {
             let (kink, off) = (ratio * sampling.value(t), sigma - ratio * sampling.value(t));
             // Where both are one field rounding crosses no kink.
             if off.abs() <= SAME * kink { 0.0 } else { off }

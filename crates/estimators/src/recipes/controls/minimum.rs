@@ -38,7 +38,7 @@ impl Recipe for Minimum {
     }
 
     fn prepare(&self, site: &Site) -> Result<Control, Refusal> {
-        let smallest = site.mesh.largest(|_, sigma| -sigma).map_or(0.0, |(_, value)| -value);
+        let smallest = site.mesh.largest(&|_, sigma| -sigma).map_or(0.0, |(_, value)| -value);
         Ok(Control::Pieces(Piecewise::constant(smallest.max(0.0), site.mesh.support())))
     }
 }

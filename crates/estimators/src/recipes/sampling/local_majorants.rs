@@ -125,7 +125,7 @@ fn on_segments(site: &Site, control: &Control, n: usize) -> Piecewise {
     let cut = site.mesh.refined(&cuts, &|_, _| Vec::new());
     let bound = |ends: &[f64]| {
         let span = Span::new(ends[0], ends[1]);
-        let largest = cut.largest_in(span, |t, sigma| (sigma - control.extinction(t)).abs());
+        let largest = cut.largest_in(span, &|t, sigma| (sigma - control.extinction(t)).abs());
         largest.map_or(0.0, |(_, size)| size * MARGIN)
     };
     let values: Vec<f64> = breaks.windows(2).map(bound).collect();

@@ -19,7 +19,7 @@ impl Mesh {
     pub fn even(medium: Medium, panels: usize) -> Self {
         let mut mesh = Self::evenly(medium, panels, NODES);
         mesh.error = f64::INFINITY;
-        mesh.depth = Known::estimated(mesh.integrate(|_, sigma| sigma), f64::INFINITY);
+        mesh.depth = Known::estimated(mesh.integrate(&|_, sigma| sigma), f64::INFINITY);
         mesh
     }
 
@@ -38,8 +38,8 @@ impl Mesh {
     #[must_use]
     pub fn coarse(&self) -> Option<Self> {
         let seen = |mesh: &Self| {
-            let largest = mesh.largest(|_, sigma| sigma).map_or(0.0, |(_, largest)| largest);
-            [mesh.integrate(|_, sigma| sigma), mesh.integrate(|_, sigma| sigma * sigma), largest]
+            let largest = mesh.largest(&|_, sigma| sigma).map_or(0.0, |(_, largest)| largest);
+            [mesh.integrate(&|_, sigma| sigma), mesh.integrate(&|_, sigma| sigma * sigma), largest]
         };
         let exact = seen(self);
         let counts = std::iter::successors(Some(MIN_PANELS), |panels| Some(2 * panels));

@@ -12,7 +12,7 @@ impl Spectrum {
         let own = |channel: usize, delta: bool| {
             if delta {
                 let majorant = self.majorants[channel];
-                self.survived(majorant, |n| n[channel] / majorant)
+                self.survived(majorant, &|n| n[channel] / majorant)
             } else {
                 [1, 2, 3, 4].map(|k| flown(channel).powi(k))
             }
@@ -35,7 +35,7 @@ impl Spectrum {
             }
             Tracker::Tracking(chance) => {
                 let majorant = self.majorants[0];
-                self.survived(majorant, |n| {
+                self.survived(majorant, &|n| {
                     let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
                     chance.of_null(&shares)
                 })
@@ -44,8 +44,8 @@ impl Spectrum {
         CountDistribution::of_raw(0.0, raw::of_factorial(factorial), self.mesh.relative_error())
     }
 
-    fn survived(&self, rate: f64, survival: impl Fn(&[f64]) -> f64) -> [f64; 4] {
-        survived(&self.mesh, rate, |node| {
+    fn survived(&self, rate: f64, survival: &dyn Fn(&[f64]) -> f64) -> [f64; 4] {
+        survived(&self.mesh, rate, &|node| {
             let n: Vec<f64> = self.nulls.iter().map(|nulls| nulls[node]).collect();
             survival(&n)
         })
@@ -54,7 +54,7 @@ impl Spectrum {
 
 /// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with a probability,
 /// given at every node.
-pub fn survived(mesh: &Mesh, rate: f64, survival: impl Fn(usize) -> f64) -> [f64; 4] {
+pub fn survived(mesh: &Mesh, rate: f64, survival: &dyn Fn(usize) -> f64) -> [f64; 4] {
     let mut found = Survival::default();
     for (panel, nodes) in mesh.numbered() {
         let q: Vec<f64> = nodes.map(|i| rate * survival(i)).collect();

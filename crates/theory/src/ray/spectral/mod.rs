@@ -92,9 +92,9 @@ impl Spectrum {
     pub fn new(meshes: &[&Mesh], majorants: Vec<f64>, hero: Vec<f64>, tracker: Tracker) -> Self {
         let media: Vec<_> = meshes.iter().map(|mesh| mesh.medium()).collect();
         let cuts = if tracker == Tracker::Tracking(Chance::Maximum) {
-            Mesh::joint_cuts(meshes, Vec::new(), |channel, t| [media[channel].extinction(t)])
+            Mesh::joint_cuts(meshes, Vec::new(), &|channel, t| [media[channel].extinction(t)])
         } else {
-            Mesh::joint_cuts(meshes, Vec::new(), |_, _| [])
+            Mesh::joint_cuts(meshes, Vec::new(), &|_, _| [])
         };
         let smooth = |mesh: &Mesh, panel: super::mesh::Panel<'_>| {
             let mut functions = Vec::new();
@@ -144,11 +144,11 @@ impl Spectrum {
     }
 
     /// `∫ f(n)` over the support; `f` is given the null extinctions of all channels at a node.
-    fn integrate<S: Scalar>(&self, f: impl Fn(&[f64]) -> S) -> S {
+    fn integrate<S: Scalar>(&self, f: &dyn Fn(&[f64]) -> S) -> S {
         let values: Vec<S> = (0..self.nulls[0].len())
             .map(|node| f(&self.nulls.iter().map(|nulls| nulls[node]).collect::<Vec<f64>>()))
             .collect();
-        S::of_terms(|index| self.mesh.integrate_nodes(|node| values[node].term(index)))
+        S::of_terms(|index| self.mesh.integrate_nodes(&|node| values[node].term(index)))
     }
 
     /// `E[Π X_λ^{k_λ}]`, for numbers k or series; `None` where it is not known.
@@ -176,7 +176,7 @@ impl Spectrum {
             }
             let majorant = self.majorants[channel];
             let loss = |n: &[f64]| (k.power_of(n[channel] / majorant) - one) * majorant;
-            self.integrate(loss).exp()
+            self.integrate(&loss).exp()
         };
         let found = match self.tracker {
             Tracker::Independent { delta } => {
@@ -196,10 +196,10 @@ impl Spectrum {
             Tracker::Hero { delta } => of_heroes(&|hero| {
                 let majorant = self.majorants[hero];
                 let rate = |n: &[f64]| if delta { n[hero] } else { majorant };
-                let gained = self.integrate(|n| weighted(product(n), rate(n)));
+                let gained = self.integrate(&|n| weighted(product(n), rate(n)));
                 (total - one) * majorant * self.length() - depth + gained
             }),
-            Tracker::Mis { delta: false } => self.by_count(self.integrate(product), depth, total),
+            Tracker::Mis { delta: false } => self.by_count(self.integrate(&product), depth, total),
             Tracker::Mis { delta: true } => {
                 let atoms = self.atoms.as_ref()?.iter();
                 atoms.fold(none, |sum, (probability, x)| sum + product(x) * *probability)
@@ -210,7 +210,7 @@ impl Spectrum {
                     let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
                     (weighted(product(&shares), chance.of_null(&shares)) - one) * majorant
                 };
-                self.integrate(loss).exp()
+                self.integrate(&loss).exp()
             }
         };
         Some(found)
@@ -226,7 +226,7 @@ impl Spectrum {
         let own = self.majorants[channel];
         // n^k/d^{k−1}, d the density of nulls, and b.
         let gathered = |density: &dyn Fn(&[f64]) -> [f64; 2]| {
-            self.integrate(|n| {
+            self.integrate(&|n| {
                 let [density, off] = density(n);
                 let null = n[channel];
                 if null <= 0.0 {

@@ -31,12 +31,12 @@ pub fn add(
     while ln_z <= RANGE[1] {
         let segments = Segments { connection, heuristic, z: ln_z.exp() };
         let chain = match heuristic {
-            Heuristic::Balance => Chain::new(scene, grid, |depth, ends| {
+            Heuristic::Balance => Chain::new(scene, grid, &|depth, ends| {
                 let [alone, connected, ..] = segments.kernels(depth, ends);
                 [alone, connected]
             }),
             Heuristic::Power => {
-                Chain::new(scene, grid, |depth, ends| segments.kernels(depth, ends))
+                Chain::new(scene, grid, &|depth, ends| segments.kernels(depth, ends))
             }
         };
         let weights = weights(segments.z, step);

@@ -52,14 +52,14 @@ impl Grid {
 
     /// Flights with a kernel that depends on the optical depth flown.
     pub fn operator<S: Scalar>(&self, kernel: impl Fn(f64) -> S) -> Operator<S> {
-        let [operator] = self.several(|depth| [kernel(depth)]);
+        let [operator] = self.several(&|depth| [kernel(depth)]);
         operator
     }
 
     /// The flights of several kernels.
     pub fn several<S: Scalar, const N: usize>(
         &self,
-        kernels: impl Fn(f64) -> [S; N],
+        kernels: &dyn Fn(f64) -> [S; N],
     ) -> [Operator<S>; N] {
         let size = self.points.len();
         let nothing = || vec![S::from(0.0); size * size];

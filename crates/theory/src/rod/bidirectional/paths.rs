@@ -15,7 +15,7 @@ pub fn add(scene: &Scene, rules: &Rules, grid: &Grid, sums: &mut [Vec<Powers>]) 
     let segment = |depth: f64, _| -> Powers {
         std::array::from_fn(|k| rules.connection.power(depth, k.max(1)))
     };
-    Chain::new(scene, grid, segment).add(sums, |path, s| {
+    Chain::new(scene, grid, &segment).add(sums, |path, s| {
         let order = path.turns.len();
         let weight = rules.combination.weight(&path.phase, s);
         let ends = quotient(s, order, |_| 1.0, |i| scene.albedo * path.phase[i - 1]);
@@ -66,7 +66,7 @@ impl<'a> Chain<'a> {
     pub fn new<const N: usize>(
         scene: &'a Scene,
         grid: &'a Grid,
-        segment: impl Fn(f64, f64) -> [f64; N],
+        segment: &dyn Fn(f64, f64) -> [f64; N],
     ) -> Self {
         let scattered = [false, true].map(|turns| scene.albedo * scene.phase(turns));
         let light = scattered.map(|ends| {
@@ -81,7 +81,7 @@ impl<'a> Chain<'a> {
         let is_needed = *scene.orders.end() >= 2;
         let flights = [[0, 0], [0, 1], [1, 1]].map(|[i, j]| {
             let between = |depth: f64| segment(depth, scattered[i] * scattered[j]);
-            if is_needed { grid.several(between).into() } else { Vec::new() }
+            if is_needed { grid.several(&between).into() } else { Vec::new() }
         });
         let through = segment(scene.depth.value, 1.0).into();
         Self { scene, grid, count: N, through, light, sensor, flights }

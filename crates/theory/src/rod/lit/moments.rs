@@ -48,7 +48,7 @@ pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<
             };
             connections[i].each_ref().map(of)
         };
-        let future = flow.solve(source, [0.0; 2]);
+        let future = flow.solve(&source, [0.0; 2]);
         found.push(future.entering);
         futures.push(future);
     }
@@ -85,7 +85,7 @@ fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
                     let after = |last: &Importance| node.means[0] * last.at(i)[0];
                     [rate * before.as_ref().map_or(1.0, after), 0.0]
                 };
-                let counted = line.straight(1)?.solve(source, [0.0; 2]);
+                let counted = line.straight(1)?.solve(&source, [0.0; 2]);
                 for (i, moments) in found.iter_mut().enumerate() {
                     moments[usize::from(k)] = counted.at(i)[0];
                 }
@@ -99,7 +99,7 @@ fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
 /// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups, and the mean number of those of shadow rays.
 pub fn lookups(line: &Line, techniques: Techniques) -> Option<[f64; 5]> {
     let of_shadow = shadow_lookups(line, techniques.shadow)?;
-    let [one, two, three, four] = lookups_with(line, |node| of_shadow[node])?;
+    let [one, two, three, four] = lookups_with(line, &|node| of_shadow[node])?;
     let source = |i: usize, node: &Node| [node.scattering() * of_shadow[i][1]; 2];
-    Some([one, two, three, four, line.flow(0)?.solve(source, [0.0; 2]).entering])
+    Some([one, two, three, four, line.flow(0)?.solve(&source, [0.0; 2]).entering])
 }

@@ -98,9 +98,9 @@ impl<'a> Relative<'a> {
     /// becomes the likeliest.
     fn kinks(&self) -> Vec<f64> {
         if self.walks.iter().all(|&(_, walk)| walk != Proposal::Together(Chance::Maximum)) {
-            return Mesh::joint_cuts(&self.meshes, Vec::new(), |_, _| []);
+            return Mesh::joint_cuts(&self.meshes, Vec::new(), &|_, _| []);
         }
-        Mesh::joint_cuts(&self.meshes, Vec::new(), |channel, t| {
+        Mesh::joint_cuts(&self.meshes, Vec::new(), &|channel, t| {
             let (sigma, a) =
                 (self.meshes[channel].medium().extinction(t), self.rates.albedos[channel]);
             [sigma, a * sigma, (1.0 - a) * sigma]
@@ -148,7 +148,7 @@ impl<'a> Relative<'a> {
             return self.powers.iter().map(lost).collect();
         }
         let length = media[0].support().length();
-        let (gained, _) = along_all::<ROWS>(media, &self.rule, |_, sigma| {
+        let (gained, _) = along_all::<ROWS>(media, &self.rule, &|_, sigma| {
             let mut row = [0.0; ROWS];
             for (gain, k) in row.iter_mut().zip(&self.powers) {
                 *gain = self.rates.gain_of_ratio(walk, k, sigma);

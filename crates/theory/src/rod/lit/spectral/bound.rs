@@ -63,10 +63,10 @@ fn spread(line: &Line, techniques: Techniques) -> Option<f64> {
     let earlier = |here: &Importance| {
         let carried =
             |i: usize, node: &Node| node.spread(here.at(i)).map(|worth| node.scattering() * worth);
-        real.solve(carried, [0.0; 2])
+        real.solve(&carried, [0.0; 2])
     };
     let root = |importance: &Importance| importance.entering.max(0.0).sqrt();
-    let mut before = real.solve(last, [0.0; 2]);
+    let mut before = real.solve(&last, [0.0; 2]);
     let mut here = earlier(&before);
     let (mut sum, mut most) = (0.0, 0.0f64);
     for _ in 0..MAX_VERTICES {

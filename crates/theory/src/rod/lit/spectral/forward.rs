@@ -60,7 +60,7 @@ impl Forward {
         let meshes: Vec<&Mesh> = media.iter().map(|(mesh, _)| *mesh).collect();
         let knots = problem.rods.iter().flat_map(|rod| rod.rod.albedo.knots().to_vec()).collect();
         // Where two channels cross, the larger of their rates has a kink.
-        let cuts = Mesh::joint_cuts(&meshes, knots, rates);
+        let cuts = Mesh::joint_cuts(&meshes, knots, &rates);
         let smooth = |mesh: &Mesh, panel: crate::ray::mesh::Panel<'_>| {
             let mut functions = Vec::new();
             for channel in 0..count {
@@ -112,7 +112,7 @@ impl Forward {
                 };
                 majorant * (brings(0) + brings(1) - 1.0)
             };
-            self.mesh.integrate_nodes(loss).exp()
+            self.mesh.integrate_nodes(&loss).exp()
         }))
     }
 
@@ -179,7 +179,7 @@ impl Forward {
         if chances == Chances::History {
             return None;
         }
-        let factorial = survived(&self.mesh, self.majorants[0], survival);
+        let factorial = survived(&self.mesh, self.majorants[0], &survival);
         Some(CountDistribution::of_raw(0.0, of_factorial(factorial), self.mesh.relative_error()))
     }
 }

@@ -203,7 +203,7 @@ impl<'a> Orders<'a> {
                             node.sampling * (1.0 - node.means[0]) * state.albedo * source[i];
                         both
                     };
-                    let worth = flow.solve(scattered, [0.0; 2]);
+                    let worth = flow.solve(&scattered, [0.0; 2]);
                     let at_nodes = (0..nulls.len()).map(|i| worth.at(i)[way]).collect();
                     (at_nodes, worth.entering)
                 });
