@@ -14,5 +14,5 @@ pub use check::{Check, Gate, check, check_with, claim};
 
 /// Compiles the example of the manual that needs this crate only.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/first-bug.md")]
+#[doc = include_str!("../docs/first-bug.md")]
 struct FirstBug;

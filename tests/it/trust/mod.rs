@@ -4,6 +4,7 @@
 mod addresses;
 mod cures;
 mod explain;
+mod packages;
 mod pages;
 mod results;
 mod tables;
