@@ -39,6 +39,7 @@ use std::process::ExitCode;
 
 use clap::{Args, FromArgMatches, Parser, Subcommand};
 
+pub use self::help::command;
 use self::ranks::Join;
 use crate::case::Catalogue;
 
