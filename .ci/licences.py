@@ -58,7 +58,7 @@ def main(target, folder):
             bare.append(f"{name}, by {', '.join(package['authors']) or 'its authors'}")
     rust = Path(run("rustc", "--print", "sysroot").strip())
     unwinder = Path(run(sys.executable, "-c", "import ziglang; print(ziglang.__path__[0])").strip()) / "lib/libunwind/LICENSE.TXT"
-    for name, path in [("DejaVu Sans", Path("src/report/plots/dejavu-sans.LICENSE.txt")), ("LLVM libunwind", unwinder)]:
+    for name, path in [("DejaVu Sans", Path("crates/drawing/src/dejavu-sans.LICENSE.txt")), ("LLVM libunwind", unwinder)]:
         by_text.setdefault(path.read_text(encoding="utf-8").strip(), []).append(name)
     rule = "=" * 100
     parts = [f"{rule}\n" + "\n".join(names) + f"\n{rule}\n\n{text}\n" for text, names in by_text.items()]
