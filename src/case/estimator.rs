@@ -10,6 +10,7 @@ use estimators::trial::Entry;
 use estimators::{Estimated, Inputs};
 use media::Body;
 use media::catalogue::{Page, Settings, Value};
+use theory::problems::ProblemOption;
 
 /// Properties of an estimator that do not depend on its problem.
 pub struct Features {
@@ -35,7 +36,7 @@ impl Features {
             alias: entry.without_control(),
             default_control: entry.default_control(),
             needs: entry.needs(),
-            label: [false, true].map(|albedo| entry.label(albedo)),
+            label: [entry.label(false), entry.label(true)],
         }
     }
 }
@@ -179,25 +180,78 @@ impl ParsedEstimator {
     }
 }
 
+/// Estimators that a problem offers, without its type.
+struct Offer {
+    problem: &'static str,
+    options: &'static [ProblemOption],
+    /// Names of the built-in ones, then of the program's own.
+    names: Vec<String>,
+}
+
+/// Reads the own settings of the estimator at a place of an offer, keeps its entry, and returns its features; `None` after
+/// a mistake.
+type Keep<'a> = dyn FnMut(usize, &Settings) -> Option<Features> + 'a;
+
+/// Calls `read` with the estimators of problem `P`, and returns the entries that it kept. Here alone the reader depends on
+/// the problem's type: all else is compiled once for all problems.
+fn reading<P: Estimated, T>(
+    settings: &Settings,
+    read: &dyn Fn(&Offer, &mut Keep) -> Option<T>,
+) -> Option<(T, Vec<Box<dyn Entry<P>>>)> {
+    let built_in = P::CATALOGUE.pages;
+    let mut offer = Offer::new(P::MODULE, P::OPTIONS, built_in);
+    let mut own: Vec<EstimatorReader<P>> = Vec::new();
+    for (page, reader) in settings.own_pages().of::<EstimatorReader<P>>() {
+        offer.names.push(page.name());
+        own.push(*reader);
+    }
+    let mut entries = Vec::new();
+    let found = read(&offer, &mut |index, settings| {
+        let entry = match index.checked_sub(built_in.len()) {
+            None => P::read_estimator(index, settings)?,
+            Some(place) => own[place](settings)?,
+        };
+        let features = Features::of(&*entry);
+        entries.push(entry);
+        Some(features)
+    })?;
+    Some((found, entries))
+}
+
+impl Offer {
+    fn new(
+        problem: &'static str,
+        options: &'static [ProblemOption],
+        pages: &'static [Page],
+    ) -> Self {
+        Self { problem, options, names: pages.iter().map(Page::name).collect() }
+    }
+
+    /// Reads `{ NAME = { … } }`: an estimator, and the common settings beside its own.
+    fn read(
+        &self,
+        keep: &mut Keep,
+        table: &Settings,
+        body: Option<&Body>,
+        defaults: Defaults,
+    ) -> Option<ParsedEstimator> {
+        let problem = self.problem.replace('_', "-");
+        let explain = |name: &str| explain_estimator(&problem, self.options, name);
+        let (index, settings) = table.choice_explained(&self.names, &explain)?;
+        let features = keep(index, &settings);
+        ParsedEstimator::read(&self.names[index], features, &settings, body, defaults)
+    }
+}
+
 /// Reads `{ NAME = { … } }`: an estimator of problem `P`, and the common settings beside its own.
 pub fn read<P: Estimated>(
     table: &Settings,
     body: Option<&Body>,
     defaults: Defaults,
 ) -> Option<(ParsedEstimator, Box<dyn Entry<P>>)> {
-    let own = || table.own_pages().of::<EstimatorReader<P>>();
-    let pages = P::CATALOGUE.pages.iter().chain(own().map(|(page, _)| page));
-    let names: Vec<String> = pages.map(Page::name).collect();
-    let problem = P::MODULE.replace('_', "-");
-    let explain = |name: &str| explain_estimator(&problem, P::OPTIONS, name);
-    let (index, settings) = table.choice_explained(&names, &explain)?;
-    let entry = match index.checked_sub(P::CATALOGUE.pages.len()) {
-        None => P::read_estimator(index, &settings),
-        Some(place) => own().nth(place).and_then(|(_, read)| read(&settings)),
-    };
-    let features = entry.as_deref().map(Features::of);
-    let parsed = ParsedEstimator::read(&names[index], features, &settings, body, defaults)?;
-    Some((parsed, entry?))
+    let read = |offer: &Offer, keep: &mut Keep| offer.read(keep, table, body, defaults);
+    let (parsed, mut entries) = reading(table, &read)?;
+    Some((parsed, entries.pop()?))
 }
 
 /// Refuses a σ̂ that learns from lookups if every lookup must be counted; `None` after a mistake.
@@ -232,15 +286,25 @@ impl Estimators {
         body: Option<&Body>,
         defaults: Defaults,
     ) -> Option<EstimatorsOf<P>> {
+        reading(settings, &|offer, keep| Self::read_of(offer, keep, settings, body, defaults))
+    }
+
+    fn read_of(
+        offer: &Offer,
+        keep: &mut Keep,
+        settings: &Settings,
+        body: Option<&Body>,
+        defaults: Defaults,
+    ) -> Option<Self> {
         let sampling = read_sampling(settings, body);
         let control = read_if(settings, "control", body, controls::read);
         let list = settings.tables("estimators").map(|tables| {
-            let read = |table: &Settings| {
-                let (parsed, entry) = read::<P>(table, body, defaults)?;
+            let mut read = |table: &Settings| {
+                let parsed = offer.read(keep, table, body, defaults)?;
                 countable(table, defaults, parsed.sampling.as_deref())?;
-                Some((parsed, entry))
+                Some(parsed)
             };
-            tables.iter().map(read).collect::<Vec<_>>()
+            tables.iter().map(&mut read).collect::<Vec<_>>()
         });
         if let Some(Some(sampling)) = &sampling {
             countable(settings, defaults, Some(sampling.as_ref()))?;
@@ -250,10 +314,9 @@ impl Estimators {
             let help = "list one, as in { ratio = {} }";
             settings.fault("estimators", "no estimator is listed", help);
         }
-        let list: Option<Vec<_>> = list.into_iter().collect();
-        let (list, entries): (Vec<_>, Vec<_>) = list?.into_iter().unzip();
+        let list: Vec<_> = list.into_iter().collect::<Option<_>>()?;
         refuse_idle_controls(settings, &list, defaults.swept);
-        Some((Self { list, sampling: sampling?, control: control? }, entries))
+        Some(Self { list, sampling: sampling?, control: control? })
     }
 
     /// Returns the σ̂ of an estimator; `None` if it takes none.

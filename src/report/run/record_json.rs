@@ -8,7 +8,9 @@
 
 use std::collections::BTreeMap;
 
+use serde::de::Error;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::plan::ExperimentId;
 use crate::record::baseline::Comparison;
@@ -79,17 +81,17 @@ pub enum UnreadableRecord {
 ///
 /// The text is of a later version, or not a record.
 pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
-    #[derive(Deserialize)]
-    struct Form {
-        schema: u64,
-    }
+    // Through one tree for both versions: the reader of a tree of types is compiled anew for each source.
+    let tree: Value = serde_json::from_slice(text)?;
     // The version is read first: everything else depends on it.
-    let Form { schema: found } = serde_json::from_slice(text)?;
-    let document: Document<Results> = match found {
-        1 => serde_json::from_value(version1::upgraded(serde_json::from_slice(text)?))?,
-        _ if found == u64::from(SCHEMA) => serde_json::from_slice(text)?,
+    let schema = tree.get("schema").ok_or_else(|| serde_json::Error::missing_field("schema"))?;
+    let found = u64::deserialize(schema)?;
+    let tree = match found {
+        1 => version1::upgraded(tree),
+        _ if found == u64::from(SCHEMA) => tree,
         _ => return Err(UnreadableRecord::Schema { found }),
     };
+    let document: Document<Results> = serde_json::from_value(tree)?;
     let Document { mut results, timing, comparison, .. } = document;
     let times: BTreeMap<ExperimentId, Spent> = timing
         .experiments
