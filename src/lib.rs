@@ -65,6 +65,7 @@ pub mod case;
 pub mod cli;
 pub mod draw;
 pub mod export;
+mod json;
 pub mod judge;
 pub mod plan;
 pub mod record;

@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::options::TIMES;
 use crate::case::sweep::Variation;
 use crate::case::{Case, Spec};
+use crate::json;
 use estimators::{DrawBuffer, Experiment};
 use media::files;
 use numeric::pack;
@@ -103,7 +104,7 @@ impl Prices {
                 let path = prices.path.as_deref().filter(|_| !anew);
                 let kept = path.and_then(|path| std::fs::read(path).ok());
                 // A file that cannot be read is written anew, and so are costs that cannot be.
-                let kept = kept.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+                let kept = kept.and_then(|bytes| json::read(&bytes).ok());
                 let is_cost = |cost: f64| (0.0..=*TIMES.end()).contains(&cost);
                 prices.known = kept.unwrap_or_default();
                 prices.known.retain(|_, Price { draw, lookup, error }| {

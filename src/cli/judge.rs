@@ -13,6 +13,7 @@ use super::help::Names;
 use super::reports::Inconclusive;
 use super::{Console, USAGE, numbers, output};
 use crate::case::Catalogue;
+use crate::json;
 use crate::judge::{self, Column, Draws, Format, Judgement, Options, ROUNDING};
 use crate::record::Verdict;
 use crate::report::judge as report;
@@ -372,8 +373,8 @@ impl Arguments {
     /// Returns all verdicts as JSON.
     fn json(&self, judged: &[Judged]) -> serde_json::Result<String> {
         match (judged, self.files.len()) {
-            ([one], 1) if one.channel.is_empty() => serde_json::to_string_pretty(&one.judgement),
-            _ => serde_json::to_string_pretty(&self.object(judged)),
+            ([one], 1) if one.channel.is_empty() => json::pretty(&one.judgement),
+            _ => json::pretty(&self.object(judged)),
         }
     }
 

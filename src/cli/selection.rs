@@ -203,7 +203,15 @@ pub fn on_threads<T: Send>(
     threads: usize,
     f: impl FnOnce() -> anyhow::Result<T> + Send,
 ) -> anyhow::Result<T> {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
+    let (mut f, mut found) = (Some(f), None);
+    install(threads, &mut || found = f.take().map(|f| f()))?;
+    found.context("the threads did nothing")?
+}
+
+/// Calls `f` once on this number of threads: rayon's way to its threads is compiled here alone.
+fn install(threads: usize, f: &mut (dyn FnMut() + Send)) -> anyhow::Result<()> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f);
+    Ok(())
 }
 
 /// Leaves out repeated cases. Two different cases of one name are an error: they would share random numbers and files.

@@ -33,6 +33,7 @@ use super::fields::{FILE as GRID, file_of};
 use super::scene::{Field, Light, Scene, View};
 use super::{ExportError, Target};
 use crate::case::{Case, Source};
+use crate::json;
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 use theory::{self, Prediction};
@@ -130,7 +131,7 @@ impl Truth {
     ///
     /// The encoder fails.
     pub fn json(&self) -> Result<String, ExportError> {
-        Ok(serde_json::to_string_pretty(self)? + "\n")
+        Ok(json::pretty(self)? + "\n")
     }
 }
 

@@ -197,7 +197,13 @@ impl<'a> Plan<'a> {
 
     /// Returns all experiments with their case.
     pub fn experiments(&self) -> impl Iterator<Item = (&PlannedCase<'a>, &Planned)> {
-        self.cases.iter().flat_map(|case| case.experiments.iter().map(move |e| (case, e)))
+        let mut all = Vec::new();
+        for case in &self.cases {
+            for planned in &case.experiments {
+                all.push((case, planned));
+            }
+        }
+        all.into_iter()
     }
 }
 

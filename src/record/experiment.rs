@@ -267,7 +267,9 @@ impl ExperimentRecord {
 
     /// Returns the findings about a channel, and about the experiment as a whole.
     pub fn findings_about(&self, channel: &str) -> impl Iterator<Item = &Finding> {
-        self.findings.iter().filter(move |finding| finding.is_about(channel))
+        let mut about: Vec<&Finding> = self.findings.iter().collect();
+        about.retain(|finding| finding.is_about(channel));
+        about.into_iter()
     }
 
     /// Returns the label of the experiment that is the same by definition; empty for none.

@@ -163,24 +163,31 @@ pub struct Timing {
     pub command: String,
 }
 
+/// Lists the rows of cases. Tables and plots have dozens of uses for rows: an iterator over a list is less to compile for
+/// each of them than one over cases, experiments and channels.
+fn listed(cases: &[CaseRecord]) -> std::vec::IntoIter<Row<'_>> {
+    let mut rows = Vec::new();
+    for case in cases {
+        for experiment in &case.experiments {
+            for (number, values) in experiment.channels.iter().enumerate() {
+                rows.push(Row { case, experiment, number, values });
+            }
+        }
+    }
+    rows.into_iter()
+}
+
 impl Results {
     /// Returns all rows, in the order of the cases.
     pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
-        self.cases.iter().flat_map(CaseRecord::rows)
+        listed(&self.cases)
     }
 }
 
 impl CaseRecord {
     /// Returns the channels of all experiments.
     pub fn rows(&self) -> impl Iterator<Item = Row<'_>> + Clone {
-        self.experiments.iter().flat_map(|experiment| {
-            experiment.channels.iter().enumerate().map(|(number, values)| Row {
-                case: self,
-                experiment,
-                number,
-                values,
-            })
-        })
+        listed(std::slice::from_ref(self))
     }
 
     /// Returns the channels of all experiments, to change them.
@@ -262,8 +269,9 @@ impl<'a> Row<'a> {
 
     /// Returns the findings of the row if each finding is listed once: the first row has those of the whole experiment.
     pub fn own_findings(&self) -> impl Iterator<Item = &'a Finding> + use<'a> {
-        let is_first = self.is_first();
-        self.findings().filter(move |finding| is_first || !finding.channel.is_empty())
+        let mut own: Vec<&Finding> = self.findings().collect();
+        own.retain(|finding| self.is_first() || !finding.channel.is_empty());
+        own.into_iter()
     }
 
     /// Returns the name of the row within its case, as in `ratio, σ̂ 0.5, control mean, T(5)`.

@@ -1,10 +1,11 @@
 //! Fields of tables: one definition of each gives the column of CSV, JSON, console and page, and its line in the manual.
 
-use std::fmt::Write;
+use std::borrow::Borrow;
 
 use serde::Serialize;
 use serde::ser::Serializer;
 
+use crate::json;
 use crate::report::layout::{self, Column, Grid, Pen};
 use crate::report::run::summary_csv::Line;
 use crate::report::{Artifact, ReportError};
@@ -53,8 +54,7 @@ impl Cell {
 
     /// Returns a cell of rows of a table.
     pub fn rows<T: Table>(rows: &[T]) -> Self {
-        let fields = T::of_files();
-        Self::Rows(rows.iter().map(|row| object(&fields, row)).collect())
+        Self::Rows(objects(&T::of_files(), rows))
     }
 
     fn is_known(&self) -> bool {
@@ -194,31 +194,34 @@ impl<T> Field<T> {
 
     /// Returns the column of a console's table; columns of the highest rank leave a narrow console first.
     pub fn column(&self, rows: &[T], rank: u8) -> Column {
-        let right = self.is_numeric(rows);
-        Column::of(rows, (self.head, right, rank), |row| self.text(row))
+        let mut fields = Vec::with_capacity(rows.len());
+        for row in rows {
+            fields.push(layout::Field::plain(self.text(row)));
+        }
+        Column { head: self.head, right: self.is_numeric(rows), rank, fields }
     }
 
     /// Returns whether its texts are numbers, which are aligned to the right.
     pub fn is_numeric(&self, rows: &[T]) -> bool {
-        let is_text = matches!(rows.first().map(self.cell), Some(Cell::Text(_) | Cell::Word(_)));
-        !is_text || self.print != Print::Plain
-    }
-
-    /// Returns the meaning.
-    fn meaning(&self) -> &'static str {
-        if !self.meaning.is_empty() {
-            return self.meaning;
-        }
-        let of_run = Line::fields().into_iter().find(|field| field.name == self.name);
-        of_run.map_or("", |field| field.meaning)
+        let Some(row) = rows.first() else { return true };
+        self.print != Print::Plain || !matches!((self.cell)(row), Cell::Text(_) | Cell::Word(_))
     }
 
     /// Returns the meaning with the unit.
     pub fn tip(&self) -> String {
-        let unit =
-            if self.unit.is_empty() { String::new() } else { format!(" Unit: {}.", self.unit) };
-        format!("{}.{unit}", self.meaning())
+        tip(self.name, self.unit, self.meaning)
     }
+}
+
+/// Returns the meaning of a field with its unit.
+fn tip(name: &str, unit: &str, own: &'static str) -> String {
+    let mut meaning = own;
+    if meaning.is_empty() {
+        let of_run = Line::fields().into_iter().find(|field| field.name == name);
+        meaning = of_run.map_or("", |field| field.meaning);
+    }
+    let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
+    format!("{meaning}.{unit}")
 }
 
 /// Type of rows with its fields.
@@ -284,8 +287,11 @@ const fn is_same(a: &str, b: &str) -> bool {
 /// Returns the table of rows for a console, with these columns.
 pub fn grid<T: Table>(rows: &[T], columns: &[Shown]) -> Grid {
     let fields = T::fields();
-    let column = |shown: &Shown| fields[shown.place].column(rows, shown.rank);
-    Grid { columns: columns.iter().map(column).collect() }
+    let mut grid = Grid { columns: Vec::with_capacity(columns.len()) };
+    for shown in columns {
+        grid.columns.push(fields[shown.place].column(rows, shown.rank));
+    }
+    grid
 }
 
 /// Returns that table with a last column of words about the rows, in green and red, as text that fits the console.
@@ -297,7 +303,11 @@ pub fn judged<T: Table>(
     pen: Pen,
 ) -> String {
     let mut grid = grid(rows, columns);
-    grid.push(head, rows.iter().map(|row| layout::Field::judged(is_good(row), words)).collect());
+    let mut judged = Vec::with_capacity(rows.len());
+    for row in rows {
+        judged.push(layout::Field::judged(is_good(row), words));
+    }
+    grid.push(head, judged);
     grid.fit(pen.width);
     grid.render(pen)
 }
@@ -362,14 +372,21 @@ pub fn csv<T>(
     fields: &[Field<T>],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<String, ReportError> {
-    let wrong = |source| ReportError::Csv { name: name.to_owned(), source };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(fields.iter().map(|field| field.name)).map_err(wrong)?;
-    for row in rows {
-        let cells = fields.iter().map(|field| (field.cell)(&row).csv());
-        writer.write_record(cells).map_err(wrong)?;
+    let mut names = Vec::with_capacity(fields.len());
+    for field in fields {
+        names.push(field.name);
     }
-    let bytes = writer.into_inner().map_err(|error| wrong(error.into_error().into()))?;
+    csv_of(&names, &objects(fields, rows))
+        .map_err(|source| ReportError::Csv { name: name.to_owned(), source })
+}
+
+fn csv_of(names: &[&str], rows: &[Named<Cell>]) -> csv::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(names)?;
+    for Named(cells) in rows {
+        writer.write_record(cells.iter().map(|(_, cell)| cell.csv()))?;
+    }
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
@@ -385,7 +402,20 @@ impl<V: Serialize> Serialize for Named<V> {
 
 /// Returns a row as an object of JSON.
 pub fn object<T>(fields: &[Field<T>], row: &T) -> Named<Cell> {
-    Named(fields.iter().map(|field| (field.name, (field.cell)(row))).collect())
+    let mut cells = Vec::with_capacity(fields.len());
+    for field in fields {
+        cells.push((field.name, (field.cell)(row)));
+    }
+    Named(cells)
+}
+
+/// Returns rows as objects: what follows does not depend on their type, and is compiled once for all tables.
+fn objects<T>(fields: &[Field<T>], rows: impl IntoIterator<Item: Borrow<T>>) -> Vec<Named<Cell>> {
+    let mut objects = Vec::new();
+    for row in rows {
+        objects.push(object(fields, row.borrow()));
+    }
+    objects
 }
 
 /// Returns rows as a JSON array of objects, one per line. Unknown is `null`, and so is an infinite number, which JSON
@@ -394,9 +424,12 @@ pub fn json<T>(
     fields: &[Field<T>],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<String, ReportError> {
-    let objects = rows.into_iter().map(|row| serde_json::to_string(&object(fields, &row)));
-    let objects: Result<Vec<_>, _> = objects.collect();
-    let objects = objects?.join(",\n");
+    Ok(json_of(&objects(fields, rows))?)
+}
+
+fn json_of(objects: &[Named<Cell>]) -> serde_json::Result<String> {
+    let lines: Result<Vec<_>, _> = objects.iter().map(serde_json::to_string).collect();
+    let objects = lines?.join(",\n");
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
 }
 
@@ -412,11 +445,14 @@ enum Node {
 /// Returns a row as a JSON object. Names with a point are those of an object within it, as `order.lag`, which is `null` if
 /// none of its fields is known.
 pub fn tree<T: Table>(row: &T) -> Result<String, ReportError> {
+    Ok(tree_of(object(&T::of_files(), row))? + "\n")
+}
+
+fn tree_of(Named(cells): Named<Cell>) -> serde_json::Result<String> {
     let mut tree: Vec<(&'static str, Node)> = Vec::new();
-    for field in T::of_files() {
-        let cell = (field.cell)(row);
-        let Some((object, name)) = field.name.split_once('.') else {
-            tree.push((field.name, Node::Cell(cell)));
+    for (name, cell) in cells {
+        let Some((object, name)) = name.split_once('.') else {
+            tree.push((name, Node::Cell(cell)));
             continue;
         };
         match tree.last_mut() {
@@ -430,16 +466,21 @@ pub fn tree<T: Table>(row: &T) -> Result<String, ReportError> {
             *node = Node::Unknown(());
         }
     }
-    Ok(serde_json::to_string_pretty(&Named(tree))? + "\n")
+    json::pretty(&Named(tree))
 }
 
 /// Returns rows as a JSON object of columns, each its kind (`text`, `number`, `count` or `list`) and its values. Unknown is
 /// `null`; without rows there are no columns.
 pub fn columns<T>(fields: &[Field<T>], rows: &[T]) -> Result<String, ReportError> {
-    let mut columns = Vec::new();
+    let mut columns: Vec<(&'static str, (&'static str, Vec<Cell>))> = Vec::new();
     for field in fields {
-        let values: Vec<Cell> = rows.iter().map(field.cell).collect();
-        columns.extend(values.first().map(Cell::kind).map(|kind| (field.name, (kind, values))));
+        let mut values = Vec::with_capacity(rows.len());
+        for row in rows {
+            values.push((field.cell)(row));
+        }
+        if let Some(first) = values.first() {
+            columns.push((field.name, (first.kind(), values)));
+        }
     }
     Ok(serde_json::to_string(&Named(columns))?)
 }
@@ -455,17 +496,29 @@ pub fn artifact<T>(
 
 /// Returns fields as a table of Markdown: name, heading, unit, meaning.
 pub fn markdown<T>(fields: &[Field<T>]) -> String {
-    let (shared, own): (Vec<_>, Vec<_>) = fields.iter().partition(|field| field.meaning.is_empty());
-    let shared: Vec<String> = shared.iter().map(|field| format!("`{}`", field.name)).collect();
-    let mut text = String::new();
-    if !shared.is_empty() {
-        let _ = writeln!(text, "As in rows of a run: {}.\n", shared.join(", "));
+    let (mut shared, mut own) = (Vec::new(), String::new());
+    for Field { name, head, unit, meaning, .. } in fields {
+        if meaning.is_empty() {
+            shared.push(*name);
+        } else {
+            own += &line(name, head, unit, meaning);
+        }
     }
-    text.push_str("| column | heading | unit | meaning |\n|---|---|---|---|\n");
-    for Field { name, head, unit, meaning, .. } in own {
-        let head = if head == name { "" } else { *head };
-        let meaning = meaning.replace('|', "\\|");
-        let _ = writeln!(text, "| `{name}` | {head} | {unit} | {meaning} |");
+    let head = "| column | heading | unit | meaning |\n|---|---|---|---|\n";
+    shared_words(&shared) + head + &own
+}
+
+/// Returns the words about fields that rows of a run have, too.
+fn shared_words(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    if names.is_empty() {
+        return String::new();
     }
-    text
+    format!("As in rows of a run: {}.\n\n", names.join(", "))
+}
+
+/// Returns the row of a field in the table of Markdown.
+fn line(name: &str, head: &str, unit: &str, meaning: &str) -> String {
+    let head = if head == name { "" } else { head };
+    format!("| `{name}` | {head} | {unit} | {} |\n", meaning.replace('|', "\\|"))
 }

@@ -3,11 +3,17 @@
 /// Returns the words that are not empty, with this between any two.
 pub fn joined<T: AsRef<str>>(words: impl IntoIterator<Item = T>, by: &str) -> String {
     let mut text = String::new();
-    for word in words.into_iter().filter(|word| !word.as_ref().is_empty()) {
-        text.push_str(if text.is_empty() { "" } else { by });
-        text.push_str(word.as_ref());
+    for word in words {
+        add(&mut text, word.as_ref(), by);
     }
     text
+}
+
+fn add(text: &mut String, word: &str, by: &str) {
+    if !word.is_empty() {
+        text.push_str(if text.is_empty() { "" } else { by });
+        text.push_str(word);
+    }
 }
 
 /// Returns the items in groups of the same kind, in the order of their first items.

@@ -11,6 +11,7 @@ use clap::Args;
 
 use super::output::{self, Errors, Format};
 use super::{Console, USAGE};
+use crate::json;
 use crate::judge::files as draws_files;
 use media::files::Fault;
 use media::grid_file;
@@ -38,7 +39,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         Format::Table if console.quiet => String::new(),
         Format::Table => table(&items),
         Format::Csv => csv(&items)?,
-        Format::Json => serde_json::to_string_pretty(&items)? + "\n",
+        Format::Json => json::pretty(&items)? + "\n",
     };
     output::print(&text)?;
     Ok(if errors.is_empty() { 0 } else { errors.close(USAGE) })

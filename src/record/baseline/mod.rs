@@ -17,6 +17,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use crate::json;
 use crate::plan::ExperimentId;
 use crate::record::{Record, Row};
 use media::files;
@@ -355,7 +356,7 @@ pub(crate) fn writable(path: &Path) -> Result<(), BaselineError> {
 /// Writes a file completely or not at all.
 pub(crate) fn write<T: Serialize>(value: &T, path: &Path) -> Result<(), BaselineError> {
     let write = || -> io::Result<()> {
-        let text = serde_json::to_string_pretty(value).map_err(io::Error::other)?;
+        let text = json::pretty(value).map_err(io::Error::other)?;
         folder_of(path)?;
         files::replace(path, (text + "\n").as_bytes())
     };

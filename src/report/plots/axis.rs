@@ -24,6 +24,16 @@ pub struct Tick {
     pub label: String,
 }
 
+/// Returns the logarithm of a value on a logarithmic axis, otherwise the value.
+fn scaled(log: bool, value: f64) -> f64 {
+    if log { value.log10() } else { value }
+}
+
+/// Returns the range that contains a value, too, if that is finite.
+fn widened([low, high]: [f64; 2], value: f64) -> [f64; 2] {
+    if value.is_finite() { [low.min(value), high.max(value)] } else { [low, high] }
+}
+
 impl Axis {
     /// Returns an axis that shows all values which it can show, with a margin of this share of its length on both
     /// sides. An axis that can show none goes from 0.1 to 1.
@@ -33,10 +43,16 @@ impl Axis {
         margin: f64,
         values: impl IntoIterator<Item = f64>,
     ) -> Self {
-        let scale = |v: f64| if log { v.log10() } else { v };
-        let shown = values.into_iter().map(scale).filter(|v| v.is_finite());
-        let (low, high) =
-            shown.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for value in values {
+            range = widened(range, scaled(log, value));
+        }
+        Self::over(title.into(), log, margin, range)
+    }
+
+    /// Returns the axis over a range of scaled values.
+    fn over(title: String, log: bool, margin: f64, [low, high]: [f64; 2]) -> Self {
+        let scale = |value| scaled(log, value);
         let (low, high) = if low > high { (scale(0.1), scale(1.0)) } else { (low, high) };
         let least = if log { 0.02 } else { low.abs().max(high.abs()).max(1e-300) * 1e-6 };
         let widen = if high - low < least {
@@ -44,7 +60,7 @@ impl Axis {
         } else {
             margin * (high - low)
         };
-        let mut axis = Self { title: title.into(), log, low: 0.0, high: 0.0 };
+        let mut axis = Self { title, log, low: 0.0, high: 0.0 };
         axis.low = axis.unscaled(low - widen);
         axis.high = axis.unscaled(high + widen);
         axis
