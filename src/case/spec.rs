@@ -20,6 +20,7 @@ use crate::case::channels::read_single_channels;
 use crate::case::shorthand::spell_out;
 use media::catalogue::{Entry, Fault, Node, OwnPages, Settings, Value};
 use numeric::digits::counted;
+use numeric::order;
 
 /// Parsed case or picture.
 #[derive(Debug, Clone)]
@@ -337,7 +338,7 @@ impl Source {
 
     /// Returns the error that lists these mistakes, in the order of the file.
     fn faulty(&self, mut faults: Vec<Fault>) -> CaseError {
-        faults.sort_by_key(|fault| fault.span.start);
+        order::sort_by_key(&mut faults, |fault| fault.span.start);
         CaseError::Faulty { source_text: self.clone(), faults }
     }
 }
@@ -349,7 +350,7 @@ fn entries(table: &DeTable<'_>) -> Vec<Entry> {
         Entry { key: key.get_ref().to_string(), key_span: key.span(), node }
     };
     let mut entries: Vec<Entry> = table.iter().map(entry).collect();
-    entries.sort_by_key(|entry| entry.key_span.start);
+    order::sort_by_key(&mut entries, |entry| entry.key_span.start);
     entries
 }
 

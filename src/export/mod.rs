@@ -26,6 +26,7 @@ use truth::Truth;
 
 use crate::case::{CaseError, Catalogue, Source};
 use media::files;
+use numeric::order;
 
 /// Renderer that scenes are written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -216,7 +217,7 @@ fn older(out: &Path, names: &[String]) -> Vec<PathBuf> {
     };
     let mut older: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     older.retain(is_old);
-    older.sort();
+    order::sort(&mut older);
     older
 }
 

@@ -50,10 +50,13 @@ fn paint(backend: &mut BitMapBackend, face: &Typeface, shape: &Shape) -> Result<
                 .map_err(in_words)
         }
         Shape::Area { points, colour } => {
-            backend.fill_polygon(points.iter().map(|&point| whole(point)), colour).map_err(in_words)
+            // Of the type that paths have within plotters, too.
+            let points = points.iter().map(|&point| whole(point));
+            backend.fill_polygon(points, &colour.to_backend_color()).map_err(in_words)
         }
         Shape::Disc { at, radius, colour } => {
-            backend.draw_circle(whole(*at), natural(radius * UNITS), colour, true).map_err(in_words)
+            let (radius, colour) = (natural(radius * UNITS), colour.to_backend_color());
+            backend.draw_circle(whole(*at), radius, &colour, true).map_err(in_words)
         }
         Shape::Text(label) => write(backend, face, label),
         Shape::Image(image) => show(backend, image),
@@ -63,8 +66,8 @@ fn paint(backend: &mut BitMapBackend, face: &Typeface, shape: &Shape) -> Result<
 /// Paints every pixel as a rectangle; where they overlap the later one covers the earlier.
 fn show(backend: &mut BitMapBackend, image: &Image) -> Result<(), String> {
     for ([low, .., high, _], RGBAColor(red, green, blue, _)) in image.cells() {
-        let style = ShapeStyle::from(&RGBColor(red, green, blue)).filled();
-        backend.draw_rect(whole(low), whole(high), &style, true).map_err(in_words)?;
+        let colour = RGBColor(red, green, blue).to_backend_color();
+        backend.draw_rect(whole(low), whole(high), &colour, true).map_err(in_words)?;
     }
     Ok(())
 }

@@ -15,6 +15,7 @@ pub mod known;
 pub mod lane;
 pub mod mask;
 pub mod matrix;
+pub mod order;
 #[cfg(feature = "packs")]
 pub mod pack;
 #[cfg(feature = "packs")]
