@@ -1,6 +1,6 @@
 //! Text of JSON to and from types, by one writer and one reader.
 //!
-//! Serde compiles the whole tree of a type anew for every form that it is written in and every source that it is read
+//! Serde compiles the whole tree of a type again for every form that it is written in and every source that it is read
 //! from. Here types are written as one line, which is broken into lines as text, and are read from a [`Value`].
 
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! Lists and maps in order, for lists that are short or sorted once.
 //!
-//! The stable sort of the standard library is some thirty functions, compiled anew for each type and each order. Here it
+//! The stable sort of the standard library is some thirty functions, compiled again for each type and each order. Here it
 //! is compiled once, for numbers of items, with an indirect call for each comparison.
 
 use std::cmp::Ordering;
