@@ -14,7 +14,7 @@
 //! whatever the rounding of its cubic: 0 is the minimum.
 
 use super::lattice::Track;
-use numeric::{Lane, Row, Span, sort};
+use numeric::{Lane, Row, Span, order};
 
 /// Cubics along a ray.
 pub struct Cubics {
@@ -47,7 +47,7 @@ impl Cubics {
                 plane += 1.0;
             }
         }
-        sort::ascend(&mut crossings);
+        order::ascend(&mut crossings);
         let knots: Vec<f64> = std::iter::once(inside.from).chain(crossings).collect();
         let ends = knots[1..].iter().copied().chain(std::iter::once(inside.to));
         let row = |(&from, to): (&f64, f64)| {

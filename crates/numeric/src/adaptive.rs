@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::{Span, sort};
+use crate::{Span, order};
 
 /// Limits of halving.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +68,10 @@ pub fn halve<const N: usize>(
         }
     }
     let begins: Vec<f64> = kept.iter().map(|part| part.span.from).collect();
-    sort::ascending_places(&begins).into_iter().map(|place| kept[place]).collect()
+    order::sorted(begins.len(), &|a, b| begins[a].total_cmp(&begins[b]))
+        .into_iter()
+        .map(|place| kept[place])
+        .collect()
 }
 
 #[cfg(test)]

@@ -178,7 +178,7 @@ impl Span {
     pub fn cut(self, mut places: Vec<f64>) -> Vec<f64> {
         places.retain(|&t| self.contains_inside(t));
         places.extend([self.from, self.to]);
-        crate::sort::ascend(&mut places);
+        crate::order::ascend(&mut places);
         places.dedup();
         places
     }

@@ -24,7 +24,6 @@ pub mod quadrature;
 pub mod rng;
 pub mod roots;
 pub mod scalar_lane;
-pub mod sort;
 pub mod sum;
 pub mod words;
 

@@ -31,6 +31,11 @@ pub fn sorted(count: usize, compare: &dyn Fn(usize, usize) -> Ordering) -> Vec<u
     order
 }
 
+/// Sorts doubles by [`f64::total_cmp`]: −0 is below 0, and NaN beyond infinities.
+pub fn ascend(values: &mut [f64]) {
+    values.sort_unstable_by(f64::total_cmp);
+}
+
 /// Returns a map of pairs; later ones replace earlier ones. (`collect` would sort them first.)
 pub fn map<K: Ord, V>(pairs: impl IntoIterator<Item = (K, V)>) -> BTreeMap<K, V> {
     let mut map = BTreeMap::new();
@@ -74,6 +79,16 @@ mod tests {
                 assert_eq!(found, wanted);
             }
         }
+    }
+
+    #[test]
+    fn doubles_ascend_and_zeros_have_signs() {
+        let mut values = [2.0, f64::INFINITY, -1.0, 0.0, -0.0, 2.0];
+        ascend(&mut values);
+        assert_eq!(
+            values.map(f64::to_bits),
+            [-1.0, -0.0, 0.0, 2.0, 2.0, f64::INFINITY].map(f64::to_bits)
+        );
     }
 
     #[test]

@@ -10,7 +10,7 @@
 
 use crate::stats::ties;
 use numeric::digits::short;
-use numeric::sort;
+use numeric::order;
 
 /// A flight that leaves, as written by a program that has no other mark.
 const LEFT: f64 = -1.0;
@@ -117,7 +117,7 @@ fn is_left(x: f64) -> bool {
 
 /// The number that comes ten times as often as any other, and its count; a count of 0 without such a number.
 fn most_frequent(mut values: Vec<f64>) -> (f64, usize) {
-    sort::ascend(&mut values);
+    order::ascend(&mut values);
     let (mut most, mut second) = ((f64::NAN, 0), 0);
     for group in values.chunk_by(|a, b| a == b) {
         if group.len() > most.1 {

@@ -8,13 +8,13 @@
 //! Source: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd edition (1997), section 3.3.2 I (the test
 //! of collisions). A distribution of 53 bits gives n²/2⁵⁴ ties, one of 24 bits n²/2²⁵.
 
-use numeric::sort;
+use numeric::order;
 
 /// Number of values that equal one before them; sorts the values.
 ///
 /// `0` and `−0` are equal; NaN equals nothing.
 pub fn ties(values: &mut [f64]) -> usize {
-    sort::ascend(values);
+    order::ascend(values);
     values.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
@@ -22,7 +22,7 @@ pub fn ties(values: &mut [f64]) -> usize {
 /// once or twice; `None` where fewer than 5 occur twice or 100 once. Sorts the values. Atoms of a distribution
 /// occur more often.
 pub fn resolution(values: &mut [f64]) -> Option<f64> {
-    sort::ascend(values);
+    order::ascend(values);
     let count = |size: usize| {
         values.chunk_by(|a, b| a == b).filter(|group| group.len() == size).count() as f64
     };

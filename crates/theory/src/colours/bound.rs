@@ -31,7 +31,7 @@ use super::rates::{Proposal, Rates};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use numeric::quadrature::GaussLegendre;
-use numeric::{Span, sort};
+use numeric::{Span, order};
 
 /// Number of halvings of the panels of the integral over directions, towards straight on and straight back.
 const HALVINGS: i32 = 48;
@@ -199,7 +199,7 @@ pub fn phi(own: &Phase, hero: &Phase) -> f64 {
     let halves = (0..=HALVINGS).map(|k| 0.5f64.powi(k));
     let mut knots: Vec<f64> = halves.flat_map(|half| [half - 1.0, 1.0 - half]).collect();
     knots.extend([-1.0, 1.0]);
-    sort::ascend(&mut knots);
+    order::ascend(&mut knots);
     let over_directions = |f: &dyn Fn(f64) -> f64| {
         let panels = knots.windows(2).map(|ends| rule.integrate(ends[0], ends[1], f));
         std::f64::consts::TAU * panels.sum::<f64>()

@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::f64::consts::{LN_2, LN_10};
 
-use numeric::{roots, sort};
+use numeric::{order, roots};
 
 /// Share of the least value by which a place near a limit may exceed it.
 pub const ABOVE_LIMIT: f64 = 0.05;
@@ -197,7 +197,7 @@ impl<'a> Goal<'a> {
         let (from, furthest) = (x.ln(), furthest.ln());
         let mut beyond: Vec<f64> = self.known.borrow().iter().map(|known| known[0]).collect();
         beyond.retain(|log| sign * (log - from) > 0.0);
-        sort::ascend(&mut beyond);
+        order::ascend(&mut beyond);
         if sign < 0.0 {
             beyond.reverse();
         }

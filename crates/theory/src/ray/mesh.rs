@@ -5,7 +5,7 @@ mod even;
 use media::Medium;
 use numeric::quadrature::{GaussLegendre, dot, legendre};
 use numeric::sum::Sum;
-use numeric::{Known, Span, roots, sort};
+use numeric::{Known, Span, order, roots};
 use std::ops::Range;
 
 /// Nodes per panel, unless the medium needs fewer.
@@ -174,7 +174,7 @@ impl Mesh {
     #[must_use]
     pub fn refined(&self, cuts: &[f64], smooth: &Functions<'_>) -> Self {
         let mut cuts = cuts.to_vec();
-        sort::ascend(&mut cuts);
+        order::ascend(&mut cuts);
         let mut fine = Self {
             medium: self.medium.clone(),
             rule: self.rule.clone(),

@@ -8,7 +8,7 @@ use crate::problems::{Problem, SingleScattering};
 use numeric::adaptive::{Halved, Limits, halve};
 use numeric::quadrature::GaussLegendre;
 use numeric::sum::Sum;
-use numeric::{Known, Span, sort};
+use numeric::{Known, Span, order};
 
 /// Relative difference of two resolutions of L at which panels are fine enough.
 const RADIANCE: f64 = 2e-14;
@@ -221,11 +221,11 @@ impl<'a> Scene<'a> {
         s.retain(|&s| support.contains_inside(s));
         s.extend([support.from, support.to]);
         let mut x: Vec<f64> = s.into_iter().map(|s| self.unstretched(s)).collect();
-        sort::ascend(&mut x);
+        order::ascend(&mut x);
         let cuts = |span: Span| span.even_cuts((span.length() / WIDEST).ceil());
         let further: Vec<f64> = Span::between(&x).flat_map(cuts).collect();
         x.extend(further);
-        sort::ascend(&mut x);
+        order::ascend(&mut x);
         x.dedup();
         x
     }

@@ -14,7 +14,7 @@
 
 use super::Light;
 use numeric::quadrature::GaussLegendre;
-use numeric::{Span, exponential_integrals, sort};
+use numeric::{Span, exponential_integrals, order};
 
 /// Nodes of a panel.
 const NODES: usize = 16;
@@ -52,7 +52,7 @@ impl Panels {
         ends.extend(
             cuts.take_while(|&part| part < parts).map(|part| scale + between * part / parts),
         );
-        sort::ascend(&mut ends);
+        order::ascend(&mut ends);
         ends.dedup_by(|a, b| *a - *b < 1e-14 * depth);
         Self { depth, cut: Span::between(&ends).collect(), rule, finer }
     }
