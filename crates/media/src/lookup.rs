@@ -10,12 +10,12 @@
 
 use std::marker::PhantomData;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::Level;
 
 use super::{Extinction, Facts, Field, Inlined, Medium};
 use numeric::fused::in_fused_code;
 use numeric::geometry::Bounds;
-use numeric::pack::{self, Task, WIDTH};
+use numeric::pack::{self, Hardware, Task, WIDTH};
 use numeric::pair::PAIR_WIDTH;
 use numeric::{Lane, Pair};
 
@@ -67,7 +67,7 @@ struct Compiled<F, S> {
     simd: S,
 }
 
-impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
+impl<const N: usize, F: Formula<N>, S: Hardware> Batch<N> for Compiled<F, S> {
     fn one(&self, place: [f64; N]) -> f64 {
         self.simd.vectorize(
             #[inline(always)]
@@ -80,13 +80,13 @@ impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
             #[inline(always)]
             || {
                 // Not as a pair: draws along the ray have the bits of scalars.
-                let zero = f64x8::splat(self.simd, 0.0);
+                let zero = self.simd.splat(0.0);
                 let (mut first, mut second) = ([zero; N], [zero; N]);
                 for (axis, row) in places.iter().enumerate() {
-                    Pair(first[axis], second[axis]) = Pair::from_slice(self.simd, row);
+                    Pair(first[axis], second[axis]) = Pair::from_row(self.simd, row);
                 }
                 let mut found = [0.0; PAIR_WIDTH];
-                Pair(self.formula.at(first), self.formula.at(second)).store_slice(&mut found);
+                Pair(self.formula.at(first), self.formula.at(second)).store(&mut found);
                 found
             },
         )
@@ -96,12 +96,12 @@ impl<const N: usize, F: Formula<N>, S: Simd> Batch<N> for Compiled<F, S> {
         self.simd.vectorize(
             #[inline(always)]
             || {
-                let mut lanes = [f64x8::splat(self.simd, 0.0); N];
+                let mut lanes = [self.simd.splat(0.0); N];
                 for (axis, row) in places.iter().enumerate() {
-                    lanes[axis] = f64x8::from_slice(self.simd, row);
+                    lanes[axis] = self.simd.load(row);
                 }
                 let mut found = [0.0; WIDTH];
-                self.formula.at(lanes).store_slice(&mut found);
+                self.formula.at(lanes).store(&mut found);
                 found
             },
         )
@@ -156,7 +156,7 @@ fn compiled<'a, const N: usize>(
     formula: impl Formula<N> + 'a,
     level: Level,
 ) -> Box<dyn Batch<N> + 'a> {
-    match pack::on_wide(level, Compile::<N, _>(formula, PhantomData)) {
+    match pack::on(level, Compile::<N, _>(formula, PhantomData)) {
         Ok(batch) => batch,
         Err(Compile(formula, _)) => Box::new(OneByOne(formula)),
     }
@@ -167,7 +167,7 @@ struct Compile<'a, const N: usize, F>(F, PhantomData<&'a ()>);
 impl<'a, const N: usize, F: Formula<N> + 'a> Task for Compile<'a, N, F> {
     type Output = Box<dyn Batch<N> + 'a>;
 
-    fn run<S: Simd>(self, simd: S) -> Self::Output {
+    fn run<S: Hardware>(self, simd: S) -> Self::Output {
         Box::new(Compiled { formula: self.0, simd })
     }
 }
@@ -185,9 +185,9 @@ pub trait DepthFormula: Send + Sync {
     fn depth<L: Lane>(&self, ray: [[L; 3]; 2], interval: [L; 2]) -> L;
 }
 
-/// Compiles a formula of optical depths for the hardware of a level, if it has wide packs.
+/// Compiles a formula of optical depths for the hardware of a level, if it has packs.
 pub fn depths<F: DepthFormula>(formula: &F, level: Level) -> Option<Box<dyn Depths + '_>> {
-    pack::on_wide(level, CompileDepths(formula)).ok()
+    pack::on(level, CompileDepths(formula)).ok()
 }
 
 struct CompileDepths<'a, F>(&'a F);
@@ -195,24 +195,24 @@ struct CompileDepths<'a, F>(&'a F);
 impl<'a, F: DepthFormula> Task for CompileDepths<'a, F> {
     type Output = Box<dyn Depths + 'a>;
 
-    fn run<S: Simd>(self, simd: S) -> Self::Output {
+    fn run<S: Hardware>(self, simd: S) -> Self::Output {
         Box::new(Compiled { formula: self.0, simd })
     }
 }
 
-impl<F: DepthFormula, S: Simd> Depths for Compiled<&F, S> {
+impl<F: DepthFormula, S: Hardware> Depths for Compiled<&F, S> {
     fn of(&self, rays: &[[f64; WIDTH]; 8]) -> [f64; WIDTH] {
         self.simd.vectorize(
             #[inline(always)]
             || {
-                let mut lanes = [f64x8::splat(self.simd, 0.0); 8];
+                let mut lanes = [self.simd.splat(0.0); 8];
                 for (number, row) in rays.iter().enumerate() {
-                    lanes[number] = f64x8::from_slice(self.simd, row);
+                    lanes[number] = self.simd.load(row);
                 }
                 let [a, b, c, x, y, z, from, to] = lanes;
                 let depths = self.formula.depth([[a, b, c], [x, y, z]], [from, to]);
                 let mut found = [0.0; WIDTH];
-                depths.store_slice(&mut found);
+                depths.store(&mut found);
                 found
             },
         )
@@ -268,13 +268,13 @@ impl<'a> Lookups<'a> {
 
     /// `σ_t` at the distances of two packs.
     #[inline(always)]
-    pub fn pair<S: Simd>(&self, simd: S, t: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
+    pub fn pair<S: Hardware>(&self, simd: S, t: Pair<S::Pack>) -> Pair<S::Pack> {
         if let Some(value) = self.single_value {
             return Pair::splat(simd, value);
         }
         let mut row = [[0.0; PAIR_WIDTH]];
-        t.store_slice(&mut row[0]);
-        Pair::from_slice(simd, &self.batch.pair(&row))
+        t.store(&mut row[0]);
+        Pair::from_row(simd, &self.batch.pair(&row))
     }
 
     /// Replaces distances by `σ_t`, with the bits that each has by itself.
@@ -324,10 +324,14 @@ impl<'a> Batches<'a> {
 
     /// `σ_t` at the points of two packs.
     #[inline(always)]
-    pub fn pair<S: Simd>(&self, simd: S, points: &[[f64; PAIR_WIDTH]; 3]) -> Pair<f64x8<S>> {
+    pub fn pair<S: Hardware>(
+        &self,
+        simd: S,
+        points: &[[f64; PAIR_WIDTH]; 3],
+    ) -> Pair<S::Pack> {
         match self.single_value {
             Some(value) => Pair::splat(simd, value),
-            None => Pair::from_slice(simd, &self.batch.pair(points)),
+            None => Pair::from_row(simd, &self.batch.pair(points)),
         }
     }
 

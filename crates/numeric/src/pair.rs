@@ -8,10 +8,8 @@ use std::ops::{
     Add, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, BitXorAssign, Div, Mul, Neg, Not, Sub,
 };
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
-
 use super::mask::Mask;
-use super::pack::WIDTH;
+use super::pack::{Hardware, WIDTH};
 use super::words::Words32;
 use super::{Lane, Row, elementary};
 
@@ -22,33 +20,26 @@ pub struct Pair<L>(pub L, pub L);
 /// The elements of two packs.
 pub const PAIR_WIDTH: usize = 2 * WIDTH;
 
-impl<S: Simd> Pair<f64x8<S>> {
+impl<L: Lane> Pair<L> {
     /// A value in every element.
     #[inline(always)]
-    pub fn splat(simd: S, value: f64) -> Self {
-        Self(f64x8::splat(simd, value), f64x8::splat(simd, value))
+    pub fn splat<S: Hardware<Pack = L>>(simd: S, value: f64) -> Self {
+        Self(simd.splat(value), simd.splat(value))
     }
 
     /// Loads the elements from a row.
     #[inline(always)]
-    pub fn from_slice(simd: S, row: &[f64; PAIR_WIDTH]) -> Self {
-        Self(f64x8::from_slice(simd, &row[..WIDTH]), f64x8::from_slice(simd, &row[WIDTH..]))
-    }
-
-    /// Stores the elements in a row.
-    #[inline(always)]
-    pub fn store_slice(&self, row: &mut [f64; PAIR_WIDTH]) {
-        self.0.store_slice(&mut row[..WIDTH]);
-        self.1.store_slice(&mut row[WIDTH..]);
+    pub fn from_row<S: Hardware<Pack = L>>(simd: S, row: &[f64; PAIR_WIDTH]) -> Self {
+        let [first, second] = halves(row);
+        Self(simd.load(first), simd.load(second))
     }
 }
 
-impl<S: Simd> Pair<mask64x8<S>> {
-    /// Returns the elements as bits, the first one lowest.
-    #[inline(always)]
-    pub fn to_bitmask(self) -> u64 {
-        self.0.to_bitmask() | self.1.to_bitmask() << WIDTH
-    }
+/// The rows of the two packs.
+#[inline(always)]
+fn halves(row: &[f64; PAIR_WIDTH]) -> [&[f64; WIDTH]; 2] {
+    let (halves, _) = row.as_chunks();
+    [&halves[0], &halves[1]]
 }
 
 /// Operations on one and then on the other, with other lanes and, after a semicolon, with what both share.

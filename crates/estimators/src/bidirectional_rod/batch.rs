@@ -4,7 +4,7 @@
 //! walks, so that lanes are not refilled. As walks of a bank, each step a whole draw, they took 1.2 times (AVX2) and
 //! 1.6 times (AVX-512) as long: there each pack of eight waits for its own lookups.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::Level;
 
 use super::subpath::{Field, Tracker};
 use super::walk::{WalkEvents, draw_each};
@@ -13,10 +13,11 @@ use crate::walks::slots::{Numbers, leave};
 use crate::{DrawBuffer, Request};
 use media::Lookups;
 use media::sampling::FlightWithGaps;
-use numeric::pack::{self, Task, WIDTH};
+use numeric::pack::{self, Hardware, Task, WIDTH};
 use numeric::rng::{LANES, Random};
 use numeric::{Lane, Pair};
 use theory::problems::BidirectionalRod;
+use theory::problems::bidirectional_rod::MAX_CHANNELS;
 
 /// Makes the draws of a request on the hardware of a level. Returns the request where the hardware is too narrow,
 /// or σ̂ has several values.
@@ -31,7 +32,7 @@ pub fn packets<'r>(
         return Some(request);
     }
     let task = Draws { steps: *steps, setup, medium, request };
-    pack::on_wide(level, task).err().map(|task| task.request)
+    pack::on(level, task).err().map(|task| task.request)
 }
 
 struct Draws<'a, 'r, P> {
@@ -45,7 +46,7 @@ impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Hardware>(self, simd: S) {
         let Self { steps, setup, medium, request: Request { streams, count, buffer } } = self;
         let Some(sampling) = setup.fields.sampling.with_gaps() else { return };
         buffer.make_room(count);
@@ -54,15 +55,20 @@ impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
         let begin = FlightWithGaps::new(zero, sampling);
         let ends = [begin, begin.from_end()];
         let [first, second] = streams.packs();
-        let mut random = Both(first.awake(simd), second.awake(simd));
+        let mut random = Both::<S>(first.awake(simd), second.awake(simd));
         let mut tracker = Tracker::new(setup, zero, ends, InPairs { simd, medium });
+        let mut rows = [[0.0; LANES]; MAX_CHANNELS];
         for base in (0..count).step_by(LANES) {
             let draws = Batch { base, turn: streams.turn };
             let lives = draws.lives(count);
-            let first = mask64x8::from_bitmask(simd, lives & 0xff);
-            let lives = Pair(first, mask64x8::from_bitmask(simd, lives >> WIDTH));
+            let lives = Pair(simd.mask(lives & 0xff), simd.mask(lives >> WIDTH));
             let channels = draw_each(&steps, &mut tracker, lives, &mut random);
-            draws.write(&tracker.values[..channels], &tracker.lookups, buffer);
+            for (row, value) in rows.iter_mut().zip(&tracker.values[..channels]) {
+                value.store(row);
+            }
+            let mut lookups = [0.0; LANES];
+            tracker.lookups.store(&mut lookups);
+            draws.write(&rows[..channels], &lookups, buffer);
         }
         leave(streams, 0, u64::from(u8::MAX), random.0);
         leave(streams, 1, u64::from(u8::MAX), random.1);
@@ -76,40 +82,40 @@ struct InPairs<'a, S> {
     medium: &'a Lookups<'a>,
 }
 
-impl<S: Simd> Field<Pair<f64x8<S>>> for InPairs<'_, S> {
+impl<S: Hardware> Field<Pair<S::Pack>> for InPairs<'_, S> {
     #[inline(always)]
-    fn extinction(&self, t: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
+    fn extinction(&self, t: Pair<S::Pack>) -> Pair<S::Pack> {
         self.medium.pair(self.simd, t)
     }
 
     #[inline(always)]
-    fn exp(&self, x: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
+    fn exp(&self, x: Pair<S::Pack>) -> Pair<S::Pack> {
         Pair(x.0.exp(), x.1.exp())
     }
 }
 
 /// The streams of both packs.
 #[derive(Clone, Copy)]
-struct Both<S: Simd>(Numbers<S>, Numbers<S>);
+struct Both<S: Hardware>(Numbers<S>, Numbers<S>);
 
-impl<S: Simd> Random<Pair<f64x8<S>>> for Both<S> {
+impl<S: Hardware> Random<Pair<S::Pack>> for Both<S> {
     #[inline(always)]
-    fn uniform(&mut self) -> Pair<f64x8<S>> {
+    fn uniform(&mut self) -> Pair<S::Pack> {
         Pair(self.0.uniform(), self.1.uniform())
     }
 
     #[inline(always)]
-    fn ln_uniform(&mut self) -> Pair<f64x8<S>> {
+    fn ln_uniform(&mut self) -> Pair<S::Pack> {
         Pair(self.0.ln_uniform(), self.1.ln_uniform())
     }
 
     #[inline(always)]
-    fn uniform_where(&mut self, which: Pair<mask64x8<S>>) -> Pair<f64x8<S>> {
+    fn uniform_where(&mut self, which: Pair<S::Mask>) -> Pair<S::Pack> {
         Pair(self.0.uniform_where(which.0), self.1.uniform_where(which.1))
     }
 
     #[inline(always)]
-    fn ln_uniform_where(&mut self, which: Pair<mask64x8<S>>) -> Pair<f64x8<S>> {
+    fn ln_uniform_where(&mut self, which: Pair<S::Mask>) -> Pair<S::Pack> {
         Pair(self.0.ln_uniform_where(which.0), self.1.ln_uniform_where(which.1))
     }
 }
@@ -133,22 +139,13 @@ impl Batch {
     /// Writes values and lookups of lanes into their draws.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-    fn write<S: Simd>(
-        &self,
-        values: &[Pair<f64x8<S>>],
-        lookups: &Pair<f64x8<S>>,
-        buffer: &mut DrawBuffer,
-    ) {
-        let of = |pair: &Pair<f64x8<S>>, lane: usize| {
-            let pack = if lane < WIDTH { &pair.0 } else { &pair.1 };
-            pack.as_slice()[lane % WIDTH]
-        };
+    fn write(&self, values: &[[f64; LANES]], lookups: &[f64; LANES], buffer: &mut DrawBuffer) {
         for lane in 0..LANES {
             let draw = self.draw(lane);
             let Some(own) = buffer.lookups.get_mut(draw) else { continue };
-            *own = of(lookups, lane) as u32;
+            *own = lookups[lane] as u32;
             for (row, value) in buffer.values.iter_mut().zip(values) {
-                row[draw] = of(value, lane);
+                row[draw] = value[lane];
             }
         }
     }

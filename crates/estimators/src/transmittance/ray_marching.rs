@@ -21,14 +21,12 @@
 //! Source: M. Raab, D. Seibert, A. Keller, *Unbiased Global Illumination with Participating Media*,
 //! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
 
-use fearless_simd::{Simd, SimdBase, f64x8};
-
 use crate::walks::slots;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::catalogue::Settings;
 use media::{Extinction, Lookups};
 use numeric::Lane;
-use numeric::pack::{self, Task, WIDTH};
+use numeric::pack::{self, Hardware, Task, WIDTH};
 use numeric::rng::{LANES, Stream};
 use theory::Prediction;
 use theory::problems::{Problem, Transmittance};
@@ -91,7 +89,7 @@ impl Estimator<Transmittance> for RayMarching {
             Kernel::Packets(level) => {
                 let medium = &setup.problem.lookups(level);
                 let task = Marches { estimator: self, setup, medium, request };
-                pack::on_wide(level, task).err().map(|task| task.request)
+                pack::on(level, task).err().map(|task| task.request)
             }
         };
         let Some(request) = left else { return };
@@ -116,7 +114,7 @@ impl Task for Marches<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Hardware>(self, simd: S) {
         let Self { estimator, setup, medium, request } = self;
         let Request { streams, count, buffer } = request;
         let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
@@ -127,9 +125,9 @@ impl Task for Marches<'_, '_> {
         let (rows, rest) = values.as_chunks_mut::<LANES>();
         for row in rows {
             for (numbers, row) in packs.iter_mut().zip(row.as_chunks_mut::<WIDTH>().0) {
-                let half = f64x8::splat(simd, 0.5);
+                let half = simd.splat(0.5);
                 let u = if estimator.jitter { numbers.uniform() } else { half };
-                estimator.value(setup, medium, u).store_slice(row);
+                estimator.value(setup, medium, u).store(row);
             }
             // The first draw is that of the lane `turn`.
             row.rotate_left(streams.turn);

@@ -9,17 +9,15 @@
 
 use std::hint::black_box;
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
-
 use super::outcomes::{self, Events, Groups, Outcomes};
-use super::slots::{Numbers, Slot, Slots, leave};
+use super::slots::{Slot, Slots, leave};
 use super::{Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{DrawBuffer, Request};
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
-use numeric::pack::{self, WIDTH};
+use numeric::pack::{self, Hardware, WIDTH};
 use numeric::pair::PAIR_WIDTH;
-use numeric::rng::LANES;
+use numeric::rng::{LANES, Random};
 use numeric::{Lane, Mask, Pair};
 
 /// Eight walks. The walk itself is outside the pack: a call may take its address, and would take that of the pack.
@@ -36,24 +34,26 @@ struct Pack<L: Lane, C> {
     lookups: L,
 }
 
-/// σ_t of all channels for a pack.
-type Channels<S> = [f64x8<S>; MAX_CHANNELS];
-
 /// Numbers of eight finished draws. They are outside the pack: a compiler keeps the pack in registers only if none
 /// of its fields needs a drop.
 struct Rows {
     values: Vec<[f64; WIDTH]>,
+    /// Numbers that eight walks leave, of which some have ended.
+    left: Vec<[f64; WIDTH]>,
     defects: [f64; WIDTH],
     lookups: [f64; WIDTH],
+    /// See [`Walk::PAUSES`].
+    pause: bool,
     /// Outcomes of draws that are scored later, and of walks that score often.
     outcomes: Outcomes,
     events: Events,
 }
 
-impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
+impl<L: Lane, C: BothWays<L>> Pack<L, C> {
     #[inline(always)]
-    fn new<W: Walk>(simd: S, course: C) -> Self {
-        let (zero, all) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, true));
+    fn new<W: Walk, S: Hardware<Pack = L>>(simd: S, course: C) -> Self {
+        let zero = simd.splat(0.0);
+        let all = zero.at_most(zero);
         Self {
             from: if W::ON_RAY { course.reached() } else { zero },
             route: Route::new(course),
@@ -70,9 +70,9 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     fn fly<W: Walk>(
         &mut self,
         walk: &W,
-        state: &mut W::State<f64x8<S>>,
-        random: &mut Numbers<S>,
-    ) -> f64x8<S> {
+        state: &mut W::State<L>,
+        random: &mut impl Random<L>,
+    ) -> L {
         let [depth, number] = walk.numbers(state, random);
         self.number = number;
         if W::ON_RAY && W::IS_CHROMATIC {
@@ -90,10 +90,10 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     fn collide<W: Walk>(
         &mut self,
         walk: &W,
-        state: &mut W::State<f64x8<S>>,
-        extinction: f64x8<S>,
-        [extinctions, in_space]: [&[f64x8<S>]; 2],
-        random: &mut Numbers<S>,
+        state: &mut W::State<L>,
+        extinction: L,
+        [extinctions, in_space]: [&[L]; 2],
+        random: &mut impl Random<L>,
     ) -> u64 {
         let Self { inside, t, number, .. } = *self;
         let mean_free_path = if W::ON_RAY { walk.mean_free_path(state, &self.route) } else { t };
@@ -119,17 +119,12 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
 
     /// Stores the events of a pack's walks that score often.
     #[inline(always)]
-    fn score<W: Walk>(
-        &self,
-        walk: &W,
-        state: &W::State<f64x8<S>>,
-        pack: usize,
-        events: &mut Events,
-    ) {
+    fn score<W: Walk>(&self, walk: &W, state: &W::State<L>, pack: usize, rows: &mut Rows) {
         let which = walk.scores(state, !self.goes_on);
         if which.any() {
             let mut some = [self.from; SOME_LEFT];
-            events.push(pack, which.bits(), walk.leaves(state, &mut some));
+            rows.leave(walk.leaves(state, &mut some));
+            rows.events.push(pack, which.bits(), &rows.left);
         }
     }
 
@@ -138,32 +133,32 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     fn collect<W: Walk>(
         &self,
         walk: &W,
-        state: &W::State<f64x8<S>>,
+        state: &W::State<L>,
         (pack, ended): (usize, u64),
         rows: &mut Rows,
         (slots, buffer): (&mut Slots, &mut DrawBuffer),
     ) -> u64 {
         if W::SCORES == Scores::AtOnce {
             for (channel, row) in rows.values.iter_mut().enumerate() {
-                walk.value(state, !self.inside, channel).store_slice(row);
+                walk.value(state, !self.inside, channel).store(row);
             }
         }
         if W::HAS_DEFECT {
-            walk.defect(state, self.t.each(0.0)).store_slice(&mut rows.defects);
+            walk.defect(state, self.t.each(0.0)).store(&mut rows.defects);
         }
         if W::PAUSES {
             let lookups = walk.lookups(state, self.lookups);
-            lookups.store_slice(&mut rows.lookups);
+            lookups.store(&mut rows.lookups);
         }
         let inside = self.inside.bits();
         match W::SCORES {
-            Scores::AtOnce => rows.write::<W>([ended, inside], slots, buffer),
+            Scores::AtOnce => rows.write([ended, inside], slots, buffer),
             Scores::Later => {
                 let mut some = [self.from; SOME_LEFT];
-                let groups = walk.leaves(state, &mut some);
-                rows.write_outcomes::<S, W>([ended, inside], groups, slots, buffer)
+                rows.leave(walk.leaves(state, &mut some));
+                rows.write_outcomes([ended, inside], slots, buffer)
             }
-            Scores::Often => rows.write_events::<W>(pack, [ended, inside], slots, buffer),
+            Scores::Often => rows.write_events(pack, [ended, inside], slots, buffer),
         }
     }
 
@@ -172,8 +167,8 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
     fn restart<W: Walk>(
         &mut self,
         walk: &W,
-        state: &mut W::State<f64x8<S>>,
-        random: &mut Numbers<S>,
+        state: &mut W::State<L>,
+        random: &mut impl Random<L>,
     ) {
         let ended = !self.goes_on;
         walk.restart(state, ended, self.from.each(1.0), random);
@@ -187,32 +182,51 @@ impl<S: Simd, C: BothWays<f64x8<S>>> Pack<f64x8<S>, C> {
 impl Rows {
     /// Memory for the numbers that the walks of a request leave.
     #[inline(always)]
-    fn new<S: Simd, W: Walk>(
+    fn new<L: Lane, W: Walk>(
         walk: &W,
-        state: &W::State<f64x8<S>>,
-        one: f64x8<S>,
+        state: &W::State<L>,
+        one: L,
         (draws, buffer): (usize, &mut DrawBuffer),
     ) -> Self {
         let numbers = outcomes::count(walk.leaves(state, &mut [one; SOME_LEFT]));
-        Self::with_room::<W>(walk, numbers, draws, &mut buffer.outcomes)
+        let rows = [walk.channels(), numbers];
+        Self::with_room((W::SCORES, W::PAUSES), rows, draws, &mut buffer.outcomes)
     }
 
     #[inline(never)]
-    fn with_room<W: Walk>(walk: &W, numbers: usize, draws: usize, room: &mut Vec<f64>) -> Self {
+    fn with_room(
+        (scored, pause): (Scores, bool),
+        [channels, numbers]: [usize; 2],
+        draws: usize,
+        room: &mut Vec<f64>,
+    ) -> Self {
         let none = [0.0; WIDTH];
-        let of = |scores, count: usize| if W::SCORES == scores { count } else { 0 };
+        let of = |scores, count: usize| if scored == scores { count } else { 0 };
         Self {
-            values: vec![none; of(Scores::AtOnce, walk.channels())],
+            values: vec![none; of(Scores::AtOnce, channels)],
+            left: vec![none; numbers - 1],
             defects: none,
             lookups: none,
+            pause,
             outcomes: Outcomes::new(numbers, of(Scores::Later, draws), room),
             events: Events::new(numbers, of(Scores::Often, draws), room),
         }
     }
 
+    /// Stores the numbers that walks leave, of all lanes.
+    #[inline(always)]
+    fn leave<L: Lane>(&mut self, groups: Groups<L>) {
+        let mut rows = self.left.iter_mut();
+        for group in groups {
+            for (lanes, row) in group.iter().zip(&mut rows) {
+                lanes.store(row);
+            }
+        }
+    }
+
     /// Writes the draws of some lanes, as bits; returns the lanes that have made their last one.
     #[inline(never)]
-    fn write<W: Walk>(
+    fn write(
         &self,
         [ended, inside]: [u64; 2],
         slots: &mut Slots,
@@ -223,29 +237,28 @@ impl Rows {
                 channel[slot.draw] = row[slot.lane];
             }
             buffer.defects[slot.draw] = self.defects[slot.lane];
-            buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
+            buffer.lookups[slot.draw] = self.lookups(inside, slot);
         })
     }
 
     /// Writes the numbers from which draws are scored later.
     #[inline(never)]
-    fn write_outcomes<S: Simd, W: Walk>(
+    fn write_outcomes(
         &mut self,
         [ended, inside]: [u64; 2],
-        groups: Groups<S>,
         slots: &mut Slots,
         buffer: &mut DrawBuffer,
     ) -> u64 {
         slots.fill(ended, |slot| {
             let left = if inside >> slot.lane & 1 == 1 { 0.0 } else { 1.0 };
-            self.outcomes.write(slot.draw, left, groups, slot.lane);
-            buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
+            self.outcomes.write(slot.draw, left, &self.left, slot.lane);
+            buffer.lookups[slot.draw] = self.lookups(inside, slot);
         })
     }
 
     /// Assigns the stored events of finished walks to their draws.
     #[inline(never)]
-    fn write_events<W: Walk>(
+    fn write_events(
         &mut self,
         pack: usize,
         [ended, inside]: [u64; 2],
@@ -255,7 +268,7 @@ impl Rows {
         let over = slots.fill(ended, |slot| {
             self.events.belong(pack, slot.lane, slot.draw);
             buffer.defects[slot.draw] = 0.0;
-            buffer.lookups[slot.draw] = self.lookups::<W>(inside, slot);
+            buffer.lookups[slot.draw] = self.lookups(inside, slot);
         });
         self.events.forget(pack, ended);
         over
@@ -263,8 +276,8 @@ impl Rows {
 
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
-    fn lookups<W: Walk>(&self, inside: u64, Slot { lane, steps, .. }: Slot) -> u32 {
-        if W::PAUSES {
+    fn lookups(&self, inside: u64, Slot { lane, steps, .. }: Slot) -> u32 {
+        if self.pause {
             self.lookups[lane] as u32
         } else {
             // The last step of a walk that leaves makes no lookup.
@@ -273,8 +286,8 @@ impl Rows {
     }
 
     /// Returns the memory for numbers to the buffer.
-    fn give_back<W: Walk>(self, buffer: &mut DrawBuffer) {
-        match W::SCORES {
+    fn give_back(self, scored: Scores, buffer: &mut DrawBuffer) {
+        match scored {
             Scores::AtOnce => {}
             Scores::Later => buffer.outcomes = self.outcomes.into_room(),
             Scores::Often => buffer.outcomes = self.events.into_room(),
@@ -283,7 +296,7 @@ impl Rows {
 
     /// Computes values from the numbers that walks left.
     #[inline(always)]
-    fn score<S: Simd, W: Walk>(&self, simd: S, walk: W, draws: usize, buffer: &mut DrawBuffer) {
+    fn score<S: Hardware, W: Walk>(&self, simd: S, walk: W, draws: usize, buffer: &mut DrawBuffer) {
         match W::SCORES {
             Scores::AtOnce => {}
             Scores::Later => pack::outlined(
@@ -303,11 +316,11 @@ impl Rows {
 /// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen lanes in a
 /// channel.
 #[inline(always)]
-pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(usize, Pair<f64x8<S>>) -> Pair<f64x8<S>>,
+    look_up: impl Fn(usize, Pair<S::Pack>) -> Pair<S::Pack>,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -318,13 +331,14 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         |lanes| lanes.awake(simd),
     );
     // Two names, no array: an index keeps an array in memory, and AVX2 then uses masked stores.
-    let (mut pack, mut other) = (Pack::new::<W>(simd, course), Pack::new::<W>(simd, course));
-    let (one, all) = (f64x8::splat(simd, 1.0), mask64x8::splat(simd, true));
+    let (mut pack, mut other) =
+        (Pack::new::<W, S>(simd, course), Pack::new::<W, S>(simd, course));
+    let (one, all) = (simd.splat(1.0), simd.mask(u64::MAX));
     let mut state = walk.begin(one, all, &mut first);
     let mut other_state = walk.begin(one, all, &mut second);
-    let mut rows = Rows::new::<S, W>(&walk, &state, one, (count, &mut *buffer));
+    let mut rows = Rows::new::<S::Pack, W>(&walk, &state, one, (count, &mut *buffer));
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
-    let none: Channels<S> = [f64x8::splat(simd, 0.0); MAX_CHANNELS];
+    let none = [simd.splat(0.0); MAX_CHANNELS];
     let (mut channels, mut other_channels) = (none, none);
     let mut in_space = [none; 2];
     let media = if W::IS_CHROMATIC { walk.media() } else { 0 };
@@ -356,8 +370,8 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         let others = [&other_channels[..media], &in_space[1][..there]];
         let other_ended = other.collide(walk, &mut other_state, found.1, others, &mut second);
         if W::SCORES == Scores::Often {
-            pack.score(walk, &state, 0, &mut rows.events);
-            other.score(walk, &other_state, 1, &mut rows.events);
+            pack.score(walk, &state, 0, &mut rows);
+            other.score(walk, &other_state, 1, &mut rows);
         }
         if ended != 0 {
             let draws = (&mut slots, &mut *buffer);
@@ -375,26 +389,26 @@ pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
         other_slots.step();
     }
     rows.score(simd, walk, count, buffer);
-    rows.give_back::<W>(buffer);
+    rows.give_back(W::SCORES, buffer);
     streams.turn = (turn + count) % LANES;
 }
 
 /// Looks fields up in space for both packs, if a lane has a collision there.
 #[inline(always)]
-fn look_up_in_space<S: Simd, W: Walk>(
+fn look_up_in_space<S: Hardware, W: Walk>(
     simd: S,
     walk: &W,
-    [here, there]: [&W::State<f64x8<S>>; 2],
-    [found, other]: &mut [[f64x8<S>; MAX_CHANNELS]; 2],
+    [here, there]: [&W::State<S::Pack>; 2],
+    [found, other]: &mut [[S::Pack; MAX_CHANNELS]; 2],
 ) {
     let ((inside, place), (other_inside, other_place)) =
         (walk.in_space(here), walk.in_space(there));
-    if !(inside | other_inside).any_true() {
+    if !(inside | other_inside).any() {
         return;
     }
     let mut places = [[0.0; PAIR_WIDTH]; 3];
     for (axis, row) in places.iter_mut().enumerate() {
-        Pair(place[axis], other_place[axis]).store_slice(row);
+        Pair(place[axis], other_place[axis]).store(row);
     }
     let fields = walk.fields();
     if W::IS_CHROMATIC {

@@ -1,6 +1,6 @@
 //! Choice of the driver, the course and the lookups for the draws of a request.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::Level;
 
 use super::{Nowhere, Walk, bank, plain, window};
 use crate::setup::{OnRay, Residual};
@@ -8,9 +8,9 @@ use crate::{Draw, Estimated, Kernel, Request, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Inlined, Lookups, Piecewise};
 use numeric::fused::{Loop, in_fused_code, in_own_rounding};
-use numeric::pack::{self, Task};
+use numeric::pack::{self, Hardware, Task};
 use numeric::rng::Stream;
-use numeric::{Pair, ScalarLane};
+use numeric::{Lane, Pair, ScalarLane};
 use theory::problems::Channels;
 
 /// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
@@ -145,7 +145,7 @@ pub fn packets<'r, P: Estimated<Fields: OnRay>, W: Walk>(
         return Some(request);
     }
     let task = SideBySide { walk, sampling, medium, request };
-    pack::on_wide(level, task).err().map(|task| task.request)
+    pack::on(level, task).err().map(|task| task.request)
 }
 
 /// Makes the draws of a request in packets of walks with all their lookups in space. Returns the request where the
@@ -155,7 +155,7 @@ pub fn packets_in_space<'r>(
     walk: &impl Walk,
     request: Request<'r>,
 ) -> Option<Request<'r>> {
-    pack::on_wide(level, InSpace { walk, request }).err().map(|task| task.request)
+    pack::on(level, InSpace { walk, request }).err().map(|task| task.request)
 }
 
 /// Implements the draws of a page by a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. A
@@ -201,12 +201,12 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Hardware>(self, simd: S) {
         let Self { walk, sampling, medium, request } = self;
         if W::IS_NOWHERE {
             return outlined(simd, *walk, Nowhere, medium, request);
         }
-        let zero = f64x8::splat(simd, 0.0);
+        let zero = simd.splat(0.0);
         let Some(even) = sampling.with_gaps() else {
             if const { W::IN_PIECES && !W::IS_CHROMATIC } {
                 outlined(simd, *walk, FlightOverPieces::new(zero, sampling), medium, request);
@@ -240,7 +240,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
             );
         }
         match medium.inlined() {
-            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && pack::is_one_register::<S>() } =>
+            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && S::IS_ONE_REGISTER } =>
             {
                 in_window(
                     simd,
@@ -251,7 +251,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
                     request,
                 );
             }
-            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && pack::is_one_register::<S>() } =>
+            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && S::IS_ONE_REGISTER } =>
             {
                 in_window(
                     simd,
@@ -276,7 +276,7 @@ impl<W: Walk> Task for InSpace<'_, '_, W> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Hardware>(self, simd: S) {
         bank::run(
             simd,
             *self.walk,
@@ -290,7 +290,7 @@ impl<W: Walk> Task for InSpace<'_, '_, W> {
 
 /// Lookups by calls, in a function of its own for each course: compile time grows as the square of a function's length.
 #[inline(always)]
-fn outlined<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+fn outlined<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
     simd: S,
     walk: W,
     course: C,
@@ -324,11 +324,11 @@ fn outlined<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
 }
 
 #[inline(always)]
-fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+fn in_window<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(Pair<f64x8<S>>) -> Pair<f64x8<S>>,
+    look_up: impl Fn(Pair<S::Pack>) -> Pair<S::Pack>,
     request: Request,
 ) {
     pack::outlined(
@@ -340,6 +340,6 @@ fn in_window<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
 
 /// `σ_t` of a field of a known type, with the bits of [`Lookups::pair`].
 #[inline(always)]
-fn each<S: Simd>(field: &impl media::Extinction, t: Pair<f64x8<S>>) -> Pair<f64x8<S>> {
+fn each<L: Lane>(field: &impl media::Extinction, t: Pair<L>) -> Pair<L> {
     Pair(field.extinction(t.0), field.extinction(t.1))
 }

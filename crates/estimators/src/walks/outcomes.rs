@@ -1,20 +1,18 @@
 //! Numbers that walks leave at their ends, from which draws are computed eight at a time.
 
-use fearless_simd::{Simd, SimdBase, f64x8};
-
 use super::{GROUPS, MAX_OUTCOME, MAX_SCORED, Walk};
 use crate::DrawBuffer;
 use numeric::Lane;
-use numeric::pack::WIDTH;
+use numeric::pack::{Hardware, WIDTH};
 
 /// No event, or no draw.
 const NONE: u32 = u32::MAX;
 
 /// Lists of numbers, side by side, that are the outcome of eight walks.
-pub type Groups<'a, S> = [&'a [f64x8<S>]; GROUPS];
+pub type Groups<'a, L> = [&'a [L]; GROUPS];
 
 /// Size of a record: the numbers in `groups`, and one more.
-pub fn count<S: Simd>(groups: Groups<S>) -> usize {
+pub fn count<L>(groups: Groups<L>) -> usize {
     1 + groups.iter().map(|group| group.len()).sum::<usize>()
 }
 
@@ -46,29 +44,33 @@ impl Outcomes {
 
     /// Writes a code for how a walk ended, and the numbers that it leaves in a lane.
     #[inline(always)]
-    pub fn write<S: Simd>(&mut self, draw: usize, how: f64, groups: Groups<S>, lane: usize) {
+    pub fn write(&mut self, draw: usize, how: f64, numbers: &[[f64; WIDTH]], lane: usize) {
         let mut place = draw / WIDTH * self.numbers * WIDTH + draw % WIDTH;
         self.at[place] = how;
-        for group in groups {
-            for lanes in group {
-                place += WIDTH;
-                self.at[place] = lanes.as_slice()[lane];
-            }
+        for row in numbers {
+            place += WIDTH;
+            self.at[place] = row[lane];
         }
     }
 
     #[inline(always)]
-    fn read<S: Simd>(&self, simd: S, first: usize, numbers: &mut [f64x8<S>]) {
-        for (number, lanes) in numbers.iter_mut().enumerate() {
-            let place = first * self.numbers + number * WIDTH;
-            *lanes = f64x8::from_slice(simd, &self.at[place..place + WIDTH]);
+    fn read<S: Hardware>(&self, simd: S, first: usize, numbers: &mut [S::Pack]) {
+        let (rows, _) = self.at[first * self.numbers..].as_chunks();
+        for (lanes, row) in numbers.iter_mut().zip(rows) {
+            *lanes = simd.load(row);
         }
     }
 
     /// Computes the values of draws; their lookups are in the buffer.
     #[inline(always)]
-    pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, draws: usize, buffer: &mut DrawBuffer) {
-        let zero = f64x8::splat(simd, 0.0);
+    pub fn score<S: Hardware>(
+        &self,
+        simd: S,
+        walk: &impl Walk,
+        draws: usize,
+        buffer: &mut DrawBuffer,
+    ) {
+        let zero = simd.splat(0.0);
         let (mut numbers, mut values) = ([zero; MAX_OUTCOME + 1], [zero; MAX_SCORED]);
         let (numbers, values) = (&mut numbers[..self.numbers], &mut values[..walk.channels()]);
         buffer.make_room(draws.next_multiple_of(WIDTH));
@@ -78,12 +80,12 @@ impl Outcomes {
             for (lane, lookups) in lookups.iter_mut().enumerate() {
                 *lookups = f64::from(buffer.lookups[first + lane]);
             }
-            let lookups = f64x8::from_slice(simd, &lookups);
+            let lookups = simd.load(&lookups);
             let defect = walk.score(&numbers[1..], zero.below(numbers[0]), lookups, values);
-            defect.store_slice(&mut buffer.defects[first..first + WIDTH]);
+            defect.store(&mut buffer.defects[first..first + WIDTH]);
             // Pictures need fewer channels.
             for (channel, row) in buffer.values.iter_mut().enumerate() {
-                values[channel].store_slice(&mut row[first..first + WIDTH]);
+                values[channel].store(&mut row[first..first + WIDTH]);
             }
         }
         buffer.make_room(draws);
@@ -126,14 +128,14 @@ impl Events {
     /// Adds events of some lanes of a pack, as bits.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation)] // fewer than 2^32
-    pub fn push<S: Simd>(&mut self, pack: usize, mut which: u64, groups: Groups<S>) {
+    pub fn push(&mut self, pack: usize, mut which: u64, numbers: &[[f64; WIDTH]]) {
         if self.count + WIDTH > self.draws.len() {
             self.make_room(2 * self.draws.len() + WIDTH);
         }
         while which != 0 {
             let lane = (which.trailing_zeros() & 7) as usize;
             which &= which - 1;
-            self.outcomes.write(self.count, 1.0, groups, lane);
+            self.outcomes.write(self.count, 1.0, numbers, lane);
             self.before[self.count] = self.last[pack][lane];
             self.last[pack][lane] = self.count as u32;
             self.count += 1;
@@ -161,28 +163,32 @@ impl Events {
 
     /// Adds all scores to their draws.
     #[inline(always)]
-    pub fn score<S: Simd>(&self, simd: S, walk: &impl Walk, buffer: &mut DrawBuffer) {
-        let zero = f64x8::splat(simd, 0.0);
+    pub fn score<S: Hardware>(&self, simd: S, walk: &impl Walk, buffer: &mut DrawBuffer) {
+        let zero = simd.splat(0.0);
         let (mut numbers, mut values) = ([zero; MAX_OUTCOME + 1], [zero; MAX_SCORED]);
         let (numbers, values) =
             (&mut numbers[..self.outcomes.numbers], &mut values[..walk.channels()]);
         for channel in &mut buffer.values {
             channel.fill(0.0);
         }
+        let mut rows = [[0.0; WIDTH]; MAX_SCORED];
         for first in (0..self.count).step_by(WIDTH) {
             self.outcomes.read(simd, first, numbers);
             walk.score(&numbers[1..], zero.at_most(zero), zero, values);
-            add(values, &self.draws[first..first + WIDTH], buffer);
+            for (row, value) in rows.iter_mut().zip(&*values) {
+                value.store(row);
+            }
+            add(&rows[..values.len()], &self.draws[first..first + WIDTH], buffer);
         }
     }
 }
 
 /// Adds the scores of eight events to their draws.
 #[inline(never)]
-fn add<S: Simd>(values: &[f64x8<S>], draws: &[u32], buffer: &mut DrawBuffer) {
+fn add(values: &[[f64; WIDTH]], draws: &[u32], buffer: &mut DrawBuffer) {
     for (lane, &draw) in draws.iter().enumerate().filter(|(_, draw)| **draw != NONE) {
         for (row, value) in buffer.values.iter_mut().zip(values) {
-            row[draw as usize] += value.as_slice()[lane];
+            row[draw as usize] += value[lane];
         }
     }
 }

@@ -1,12 +1,10 @@
 //! Draws that lanes have to make, and the streams that they leave.
 
-use fearless_simd::{Simd, u64x8};
-
-use numeric::pack::WIDTH;
+use numeric::pack::{Hardware, PackedWords, WIDTH};
 use numeric::rng::{LANES, Streams, Xoshiro};
 
 /// The streams of a pack.
-pub type Numbers<S> = Xoshiro<u64x8<S>>;
+pub type Numbers<S> = Xoshiro<<S as Hardware>::Words>;
 
 /// Draws that each lane has made and has to make.
 pub struct Slots {
@@ -81,7 +79,7 @@ impl Slots {
 
 /// Sets the stored streams of some lanes of a pack, as bits, to their present state.
 #[inline(always)]
-pub fn leave<S: Simd>(streams: &mut Streams, pack: usize, which: u64, now: Xoshiro<u64x8<S>>) {
+pub fn leave(streams: &mut Streams, pack: usize, which: u64, now: Xoshiro<impl PackedWords>) {
     if which != 0 {
         let now = now.at_rest().apart();
         let lanes = &mut streams.lanes[pack * WIDTH..];

@@ -13,12 +13,12 @@
 //! A block has two packs of streams, and their steps alternate: a step depends on the one before it, and the step
 //! of the other pack fills that latency.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u8x64, u64x8};
+use fearless_simd::{Simd, SimdBase, SimdMask, u8x64};
 
 use super::{Route, TentativeCollision, Walk};
 use crate::Request;
 use media::sampling::BothWays;
-use numeric::pack::WIDTH;
+use numeric::pack::{self, Hardware, WIDTH};
 use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
 use numeric::{Lane, Mask, Pair};
 
@@ -71,19 +71,20 @@ struct Pack<L: Lane, W: Walk, C> {
     lookups: L,
 }
 
-impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
+impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
     #[inline(always)]
-    fn new(simd: S, walk: &W, course: C) -> Self {
-        let (zero, all) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, true));
+    fn new<S: Hardware<Pack = L>>(simd: S, walk: &W, course: C) -> Self {
+        let zero = simd.splat(0.0);
+        let all = zero.at_most(zero);
         let mut none = Numbers { depth: zero, decision: zero };
-        let state = walk.begin(f64x8::splat(simd, 1.0), all, &mut none);
+        let state = walk.begin(simd.splat(1.0), all, &mut none);
         Self { route: Route::new(course), state, inside: all, lookups: zero }
     }
 
     /// Flies; returns the distances at which σ_t is looked up. Distances of lanes without a collision may lie
     /// outside the medium.
     #[inline(always)]
-    fn fly(&mut self, walk: &W, numbers: &Numbers<f64x8<S>>) -> f64x8<S> {
+    fn fly(&mut self, walk: &W, numbers: &Numbers<L>) -> L {
         self.inside = walk.fly(&mut self.state, &mut self.route, numbers.depth);
         walk.distance(&self.state, &self.route)
     }
@@ -93,18 +94,18 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
     fn collide(
         &mut self,
         walk: &W,
-        (t, extinction): (f64x8<S>, f64x8<S>),
-        numbers: &Numbers<f64x8<S>>,
+        (t, extinction): (L, L),
+        numbers: &Numbers<L>,
         row: &mut Row,
     ) -> [u64; 2] {
         let inside = self.inside;
-        walk.value(&self.state, !inside, 0).store_slice(&mut row.0[0]);
+        walk.value(&self.state, !inside, 0).store(&mut row.0[0]);
         if W::HAS_DEFECT {
-            walk.defect(&self.state, t.each(0.0)).store_slice(&mut row.0[1]);
+            walk.defect(&self.state, t.each(0.0)).store(&mut row.0[1]);
         }
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
         let number = numbers.decision;
-        let (extinctions, in_space): (&[f64x8<S>], &[f64x8<S>]) = (&[], &[]);
+        let (extinctions, in_space): (&[L], &[L]) = (&[], &[]);
         let met = TentativeCollision {
             inside,
             t,
@@ -119,7 +120,7 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
         }
         let goes_on = walk.collide(&mut self.state, &mut self.route, &met, &mut { *numbers });
         if W::PAUSES {
-            self.lookups.store_slice(&mut row.0[1]);
+            self.lookups.store(&mut row.0[1]);
             self.lookups.set_where(!goes_on, t.each(0.0));
         }
         walk.restart(&mut self.state, !goes_on, t.each(1.0), &mut { *numbers });
@@ -129,15 +130,15 @@ impl<S: Simd, W: Walk, C: BothWays<f64x8<S>>> Pack<f64x8<S>, W, C> {
 }
 
 /// The random numbers of [`STEPS`] steps.
-struct Ahead<S: Simd> {
-    logarithms: [f64x8<S>; STEPS],
+struct Ahead<S: Hardware> {
+    logarithms: [S::Pack; STEPS],
     /// Not filled for walks without [`Walk::DECIDES`].
-    decisions: [f64x8<S>; STEPS],
+    decisions: [S::Pack; STEPS],
 }
 
-impl<S: Simd> Ahead<S> {
+impl<S: Hardware> Ahead<S> {
     #[inline(always)]
-    fn find(&mut self, step: usize, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
+    fn find(&mut self, step: usize, streams: &mut Xoshiro<S::Words>, decides: bool) {
         self.logarithms[step] = streams.ln_uniform();
         if decides {
             self.decisions[step] = streams.uniform();
@@ -145,7 +146,7 @@ impl<S: Simd> Ahead<S> {
     }
 
     #[inline(always)]
-    fn find_all(&mut self, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
+    fn find_all(&mut self, streams: &mut Xoshiro<S::Words>, decides: bool) {
         for step in 0..STEPS {
             self.find(step, streams, decides);
         }
@@ -154,7 +155,7 @@ impl<S: Simd> Ahead<S> {
 
 /// [`STEPS`] steps of a pack. Walks and streams are outside: beside arrays with an index a compiler would not keep
 /// them in registers.
-struct Window<S: Simd> {
+struct Window<S: Hardware> {
     ahead: Ahead<S>,
     rows: [Row; STEPS],
     /// A bit for each lane in which a walk ended in the step.
@@ -162,13 +163,13 @@ struct Window<S: Simd> {
     /// A bit for each lane that looked σ_t up in the step.
     inside: [u8; STEPS],
     /// The streams at the first step.
-    before: Xoshiro<u64x8<S>>,
+    before: Xoshiro<S::Words>,
 }
 
-impl<S: Simd> Window<S> {
+impl<S: Hardware> Window<S> {
     #[inline(always)]
-    fn open(simd: S, streams: &mut Xoshiro<u64x8<S>>, decides: bool) -> Self {
-        let (before, none) = (*streams, [f64x8::splat(simd, 0.0); STEPS]);
+    fn open(simd: S, streams: &mut Xoshiro<S::Words>, decides: bool) -> Self {
+        let (before, none) = (*streams, [simd.splat(0.0); STEPS]);
         let mut ahead = Ahead { logarithms: none, decisions: none };
         ahead.find_all(streams, decides);
         let rows = [Row::default(); STEPS];
@@ -180,9 +181,9 @@ impl<S: Simd> Window<S> {
     fn numbers(
         &mut self,
         step: usize,
-        streams: &mut Xoshiro<u64x8<S>>,
+        streams: &mut Xoshiro<S::Words>,
         decides: bool,
-    ) -> Numbers<f64x8<S>> {
+    ) -> Numbers<S::Pack> {
         let depth = -self.ahead.logarithms[step];
         if !decides {
             return Numbers { depth, decision: depth };
@@ -208,8 +209,8 @@ impl<S: Simd> Window<S> {
     fn turn<W: Walk>(
         &mut self,
         simd: S,
-        next: Xoshiro<u64x8<S>>,
-        streams: &mut Xoshiro<u64x8<S>>,
+        next: Xoshiro<S::Words>,
+        streams: &mut Xoshiro<S::Words>,
         (draws, lanes): (&mut Draws<'_>, &mut [Stream]),
         pack: usize,
     ) {
@@ -245,14 +246,20 @@ struct StepBits {
 /// Bits of lanes by steps, as bits of steps by lanes.
 #[inline(always)]
 fn by_lanes<S: Simd>(simd: S, ended: &[u8; STEPS], inside: &[u8; STEPS]) -> [StepBits; WIDTH] {
-    let (ended, inside) = (u8x64::from_slice(simd, ended), u8x64::from_slice(simd, inside));
-    let mut steps = [StepBits::default(); WIDTH];
-    for (lane, steps) in steps.iter_mut().enumerate() {
-        let bit = 1 << lane;
-        steps.ended = (ended & bit).simd_eq(bit).to_bitmask();
-        steps.inside = (inside & bit).simd_eq(bit).to_bitmask();
-    }
-    steps
+    pack::outlined(
+        simd,
+        #[inline(always)]
+        move || {
+            let (ended, inside) = (u8x64::from_slice(simd, ended), u8x64::from_slice(simd, inside));
+            let mut steps = [StepBits::default(); WIDTH];
+            for (lane, steps) in steps.iter_mut().enumerate() {
+                let bit = 1 << lane;
+                steps.ended = (ended & bit).simd_eq(bit).to_bitmask();
+                steps.inside = (inside & bit).simd_eq(bit).to_bitmask();
+            }
+            steps
+        },
+    )
 }
 
 /// The number of draws that a lane has made, and the begin of its walk.
@@ -335,11 +342,11 @@ impl Draws<'_> {
 
 /// Makes the draws of a request. Both packs take each step together: `look_up` returns σ_t of sixteen lanes.
 #[inline(always)]
-pub fn run<S: Simd, W: Walk, C: BothWays<f64x8<S>>>(
+pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
     simd: S,
     walk: W,
     course: C,
-    look_up: impl Fn(Pair<f64x8<S>>) -> Pair<f64x8<S>>,
+    look_up: impl Fn(Pair<S::Pack>) -> Pair<S::Pack>,
     request: Request,
 ) {
     // Not in `const`: branches of other walks mention this function, too.
