@@ -37,6 +37,7 @@ pub mod selection;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use anyhow::bail;
 use clap::{Args, FromArgMatches, Parser, Subcommand};
 
 pub use self::help::command;
@@ -144,7 +145,20 @@ fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {
     }
 }
 
+/// Returns an error if the processor is older than what kernels are compiled for.
+///
+/// # Errors
+///
+/// What the processor lacks.
+pub fn can_draw() -> anyhow::Result<()> {
+    match numeric::fused::missing() {
+        Some(missing) => bail!("this processor lacks {missing}, which kernels are compiled for"),
+        None => Ok(()),
+    }
+}
+
 fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Result<u8> {
+    can_draw()?;
     // Only `run` can be shared by ranks.
     let link = ranks::join(matches!(cli.command, Command::Run(_)), join)?;
     let console = &cli.console;

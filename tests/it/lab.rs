@@ -16,8 +16,8 @@ use proptest::strategy::Just;
 use trueflight::media::Piecewise;
 use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::numeric::rng::{Address, Random};
-use trueflight::numeric::scalar_lane::{F32, Fused, ScalarLane};
 use trueflight::numeric::{DoubleDouble, Known, Lane};
+use trueflight::numeric::{F32, ScalarLane};
 use trueflight::theory::space::sphere::ball::Ball;
 use trueflight::theory::space::sphere::shells::{Centre, Resolution};
 use trueflight::theory::space::sphere::{Lights, Observable, answers};
@@ -187,7 +187,7 @@ fn repeated_decisions_have_the_mean_of_walks_that_make_their_own() {
         let stream = Address { seed: 1, experiment: 2, block, lane: 0 }.stream();
         let score = |ends: [bool; 2]| f64::from(u8::from(ends == [true, true]));
         let trail = Trail::new(stream, false);
-        own[0] += score(walk::<Fused>(&trail));
+        own[0] += score(walk::<f64>(&trail));
         assert_eq!((trail.likelihood(), trail.words()), (1.0, 2.0));
         let trail = trail.again(stream);
         repeated += score(walk::<F32>(&trail)) * trail.likelihood();

@@ -13,7 +13,6 @@ use std::marker::PhantomData;
 use fearless_simd::Level;
 
 use super::{Extinction, Facts, Field, Inlined, Medium};
-use numeric::fused::in_fused_code;
 use numeric::geometry::Bounds;
 use numeric::pack::{self, Hardware, Task, WIDTH};
 use numeric::pair::PAIR_WIDTH;
@@ -108,7 +107,7 @@ impl<const N: usize, F: Formula<N>, S: Hardware> Batch<N> for Compiled<F, S> {
     }
 }
 
-/// Lookups of one place after the other, for hardware without wide packs.
+/// Lookups of one place after the other, for hardware without packs.
 struct OneByOne<F>(F);
 
 impl<F> OneByOne<F> {
@@ -116,18 +115,13 @@ impl<F> OneByOne<F> {
     where
         F: Formula<N>,
     {
-        in_fused_code(
-            #[inline(always)]
-            || {
-                let mut place = [0.0; N];
-                for (lane, found) in found.iter_mut().enumerate() {
-                    for axis in 0..N {
-                        place[axis] = rows[axis][lane];
-                    }
-                    *found = self.0.at(place);
-                }
-            },
-        );
+        let mut place = [0.0; N];
+        for (lane, found) in found.iter_mut().enumerate() {
+            for axis in 0..N {
+                place[axis] = rows[axis][lane];
+            }
+            *found = self.0.at(place);
+        }
     }
 }
 

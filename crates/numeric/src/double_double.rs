@@ -46,7 +46,7 @@ fn quick_two_sum<L: Lane>(a: L, b: L) -> DoubleDouble<L> {
 #[inline(always)]
 pub fn two_prod<L: Lane>(a: L, b: L) -> DoubleDouble<L> {
     let high = a * b;
-    DoubleDouble { high, low: a.fused(b, -high) }
+    DoubleDouble { high, low: a.times_plus(b, -high) }
 }
 
 impl<L: Lane> DoubleDouble<L> {
@@ -259,7 +259,7 @@ impl<L: Lane> Mul for DoubleDouble<L> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let product = two_prod(self.high, other.high);
-        let cross = self.high.fused(other.low, self.low * other.high);
+        let cross = self.high.times_plus(other.low, self.low * other.high);
         quick_two_sum(product.high, product.low + cross)
     }
 }

@@ -7,8 +7,6 @@
 //!
 //! `pack` chooses code by the same rules. Loops that the compiler vectorizes by itself do not need packs.
 
-use super::scalar_lane::{Fused, Plain, ScalarLane};
-
 /// Types that prove that the processor has some instructions. One list makes both the query and the compiled code.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 macro_rules! instructions {
@@ -62,16 +60,16 @@ instructions! {
     }
 }
 
-/// Returns true if packs of this machine, and so its scalars, multiply and add in one rounding.
-#[inline(always)]
-pub fn fuses() -> bool {
+/// What a processor lacks on which nothing can be [`compiled_once`]; `None` if it lacks nothing.
+pub fn missing() -> Option<&'static str> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    return Avx2::find().is_some();
+    return Avx2::find().is_none().then_some("AVX2 and fused multiply-add (x86-64-v3)");
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    return cfg!(all(target_arch = "aarch64", target_feature = "neon"));
+    None
 }
 
-/// Runs scalar code in which a fused multiply-add is one instruction, where the machine has it.
+/// Runs scalar code in which a fused multiply-add is one instruction, where the processor has it. Elsewhere it is a call of the
+/// mathematical library: slower, the same bits. Compiled twice.
 #[inline(always)]
 pub fn in_fused_code<R>(compute: impl FnOnce() -> R) -> R {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -81,56 +79,47 @@ pub fn in_fused_code<R>(compute: impl FnOnce() -> R) -> R {
     compute()
 }
 
-/// A loop over doubles that is compiled for each rounding and each width of registers.
-pub trait Loop {
-    /// Result of the loop.
-    type Output;
-
-    /// Runs the loop. All that it calls is `#[inline(always)]`: other code would be compiled for the baseline.
-    fn run<L: ScalarLane>(self) -> Self::Output;
+/// Runs scalar code in which a fused multiply-add is one instruction: [`in_fused_code`] for code that takes long to compile, as
+/// walks do. A second copy, for processors without the instruction, would take a tenth of the time of a build.
+///
+/// # Panics
+///
+/// If the processor has something [`missing`]. The command says so and ends before it comes here.
+#[inline(always)]
+pub fn compiled_once<R>(compute: impl FnOnce() -> R) -> R {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return Avx2::find().unwrap_or_else(|| lacking()).run(compute);
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    compute()
 }
 
-/// Runs a loop in the rounding of [`super::Lane`] for `f64`, by the widest code that the machine has.
+#[cold]
+#[inline(never)]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn lacking() -> Avx2 {
+    panic!("this processor lacks {}", missing().unwrap_or_default())
+}
+
+/// A loop over doubles that is compiled for each width of registers.
+pub trait Loop {
+    /// Runs the loop. All that it calls is `#[inline(always)]`: other code would be compiled for the baseline.
+    fn run(self);
+}
+
+/// Runs a loop by the widest code that the machine has.
 #[inline(always)]
-pub fn run<T: Loop>(task: T) -> T::Output {
+pub fn run(task: impl Loop) {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if let Some(avx512) = Avx512::find() {
         return avx512.run(
             #[inline(always)]
-            || task.run::<Fused>(),
+            || task.run(),
         );
-    }
-    if !fuses() {
-        return task.run::<Plain>();
     }
     in_fused_code(
         #[inline(always)]
-        || task.run::<Fused>(),
-    )
-}
-
-/// Runs a computation in the rounding of [`super::Lane`] for `f64`, if wider registers would not speed it up.
-#[inline(always)]
-pub fn in_own_rounding<T: Loop>(task: T) -> T::Output {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if let Some(avx2) = Avx2::find() {
-        return avx2.run(
-            #[inline(always)]
-            || task.run::<Fused>(),
-        );
-    }
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    if fuses() {
-        return task.run::<Fused>();
-    }
-    plainly(task)
-}
-
-/// Runs a computation on one of the few machines that round twice, out of line.
-#[cold]
-#[inline(never)]
-fn plainly<T: Loop>(task: T) -> T::Output {
-    task.run::<Plain>()
+        || task.run(),
+    );
 }
 
 #[cfg(all(test, feature = "packs"))]
@@ -141,8 +130,8 @@ mod tests {
 
     #[test]
     fn loops_and_packs_choose_the_same_code() {
-        assert_eq!(fuses(), crate::pack::fuses(Level::new()));
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         assert_eq!(Avx512::find().is_some(), Level::new().as_avx512().is_some());
+        assert_eq!(missing().is_none(), crate::pack::has_packs(Level::new()));
     }
 }

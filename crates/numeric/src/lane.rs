@@ -4,17 +4,14 @@
 //! (`pack`) that is treated element by element, or two packs (`pair`). Control flow (loops, early exits) stays
 //! outside; within a formula a choice is a [`Lane::select`].
 //!
-//! Where the machine multiplies and adds in one rounding, lanes do, and `f64` rounds as packs do:
-//! an element of a pack has the bits that `f64` has. A machine without that instruction rounds
-//! twice, in both.
+//! Every lane multiplies and adds in one rounding: an element of a pack has the bits that `f64` has, on every machine.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::elementary;
-use super::fused::fuses;
 use super::mask::Mask;
-use super::scalar_lane::{self, Fused, Plain};
-use super::words::Words32;
+use super::scalar_lane::{ROOT_HALF, ROUNDER, place};
+use super::words::{Words32, apart, joined};
 
 /// Number of elements of a pack.
 pub const WIDTH: usize = 8;
@@ -94,16 +91,9 @@ pub trait Lane:
         compute()
     }
 
-    /// `self · factor + term`, rounded once where the machine can.
+    /// `self · factor + term`, rounded once.
     #[must_use]
     fn times_plus(self, factor: Self, term: Self) -> Self;
-
-    /// `self · factor + term`, rounded once: in doubles on every machine, in packs where the machine can.
-    #[must_use]
-    #[inline(always)]
-    fn fused(self, factor: Self, term: Self) -> Self {
-        self.times_plus(factor, term)
-    }
 
     /// `Σ cₙ selfⁿ`.
     #[must_use]
@@ -292,52 +282,9 @@ pub trait Lane:
     }
 }
 
-/// Elementary functions in the machine's own rounding.
-macro_rules! rounded {
-    ($($function:ident)*) => {
-        $(
-            #[inline(always)]
-            fn $function(self) -> Self {
-                if fuses() {
-                    elementary::$function(Fused(self)).0
-                } else {
-                    // Few machines do this: one copy is enough.
-                    #[cold]
-                    #[inline(never)]
-                    fn plainly(x: f64) -> f64 {
-                        elementary::$function(Plain(x)).0
-                    }
-                    plainly(self)
-                }
-            }
-        )*
-    };
-}
-
-/// Operations without rounding, as of [`Plain`].
-macro_rules! as_plain {
-    ($($of:ident($($other:ident)?);)*) => {
-        $(
-            #[inline(always)]
-            fn $of(self $(, $other: Self)?) -> Self {
-                Plain(self).$of($(Plain($other))?).0
-            }
-        )*
-    };
-}
-
 impl Lane for f64 {
     type Mask = bool;
     type Words = u64;
-
-    as_plain! {
-        root();
-        size();
-        nearest();
-        power_of_two();
-        alternate(k);
-    }
-    rounded!(ln exp cos sin cos_pi_size);
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {
@@ -353,12 +300,17 @@ impl Lane for f64 {
 
     #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
-        if fuses() { self.mul_add(factor, term) } else { self * factor + term }
+        self.mul_add(factor, term)
     }
 
     #[inline(always)]
-    fn fused(self, factor: Self, term: Self) -> Self {
-        self.mul_add(factor, term)
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
     }
 
     #[inline(always)]
@@ -377,34 +329,56 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
+    fn nearest(self) -> Self {
+        (self + ROUNDER) - ROUNDER
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // eleven bits
     fn split(self) -> (Self, Self) {
-        let (m, k) = Plain(self).split();
-        (m.0, k.0)
+        let bits = self.to_bits();
+        let k = (bits.wrapping_sub(ROOT_HALF) as i64) >> 52;
+        (Self::from_bits(bits.wrapping_sub((k as u64) << 52)), k as Self)
+    }
+
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        // The integer stands in the last bits of the sum; 1023 more is its exponent.
+        Self::from_bits((self + ROUNDER).to_bits().wrapping_add(1023) << 52)
+    }
+
+    #[inline(always)]
+    fn alternate(self, k: Self) -> Self {
+        Self::from_bits(self.to_bits() ^ (k + ROUNDER).to_bits() << 63)
     }
 
     #[inline(always)]
     fn words(self) -> u64 {
-        Plain(self).words()
+        let [low, _] = apart((self + ROUNDER).to_bits());
+        joined([low, low])
     }
 
     #[inline(always)]
     fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-        Plain::where_bits(words, bits, wanted, Plain(yes), Plain(no)).0
+        // Bits, not a branch: what a hash decides cannot be foreseen.
+        let mask = u64::from(words & bits == wanted).wrapping_neg();
+        let (yes, no) = (yes.to_bits(), no.to_bits());
+        Self::from_bits(no ^ ((no ^ yes) & mask))
     }
 
     #[inline(always)]
     fn negated_where(self, words: u64, bit: u32) -> Self {
-        Plain(self).negated_where(words, bit).0
+        Self::from_bits(self.to_bits() ^ (words << (63 - bit) & 1 << 63))
     }
 
     #[inline(always)]
     fn entry(self, list: &[f64]) -> Self {
-        list[scalar_lane::place(self, list.len())]
+        list[place(self, list.len())]
     }
 
     #[inline(always)]
     fn columns(self, table: &[Row]) -> [Self; 5] {
-        let [a, b, c, d, e, ..] = table[scalar_lane::place(self, table.len())].0;
+        let [a, b, c, d, e, ..] = table[place(self, table.len())].0;
         [a, b, c, d, e]
     }
 }

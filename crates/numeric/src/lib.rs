@@ -36,5 +36,5 @@ pub use lane::{Lane, Row};
 pub use mask::{Kept, Mask};
 #[cfg(feature = "packs")]
 pub use pair::Pair;
-pub use scalar_lane::{F32, Fused, Plain, ScalarLane};
+pub use scalar_lane::{F32, ScalarLane};
 pub use words::Words32;

@@ -1,9 +1,4 @@
-//! One number as a lane: a double in either rounding, and single precision.
-//!
-//! [`Plain`] rounds a product and its sum apart, as packs do on machines without a fused
-//! multiply-add; [`Fused`] rounds them once. Within code that is compiled for such a machine
-//! ([`super::fused::in_fused_code`]) that is one instruction, elsewhere a call of the mathematical
-//! library: slower, the same bits.
+//! One number as a lane: a double, and single precision.
 //!
 //! [`F32`] is what a renderer on a graphics card computes with. Every sum, product, quotient and root is
 //! rounded to 24 bits. Logarithm, exponential, sine and cosine are the true values rounded once, better
@@ -13,7 +8,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::words::{apart, joined};
+use super::words::apart;
 use super::{Lane, Row};
 
 /// Adding and subtracting `1.5·2^52` rounds a double of size below `2^51` to the nearest integer.
@@ -21,14 +16,6 @@ pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// The bits of √½: subtracting them moves the cut between exponents there.
 pub const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
-
-/// A double with separate roundings of product and sum.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plain(pub f64);
-
-/// A double with fused multiply-add: one rounding of product and sum.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fused(pub f64);
 
 /// An `f32`, a number of 24 bits.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -62,155 +49,31 @@ impl ScalarLane for f64 {
     }
 }
 
-/// A lane of one number. What is not arithmetic is done in doubles and rounded.
-macro_rules! single {
-    ($Number:ident($number:ty), |$x:ident, $factor:ident, $term:ident| $times_plus:expr, $($function:ident)*) => {
-        single!(operators $Number($number): Add::add, Sub::sub, Mul::mul, Div::div);
+#[allow(clippy::cast_possible_truncation)] // to 24 bits
+impl ScalarLane for F32 {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        Self(x as f32)
+    }
 
-        #[allow(clippy::cast_possible_truncation)] // to 24 bits
-        impl ScalarLane for $Number {
-            #[inline(always)]
-            fn of(x: f64) -> Self {
-                Self(x as $number)
-            }
+    #[inline(always)]
+    fn double(self) -> f64 {
+        f64::from(self.0)
+    }
+}
 
-            #[inline(always)]
-            fn double(self) -> f64 {
-                f64::from(self.0)
-            }
-        }
+impl Neg for F32 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
 
-        impl Neg for $Number {
-            type Output = Self;
-            #[inline(always)]
-            fn neg(self) -> Self {
-                Self(-self.0)
-            }
-        }
-
-        #[allow(clippy::cast_possible_truncation)] // to 24 bits
-        impl Lane for $Number {
-            type Mask = bool;
-            type Words = u64;
-
-            #[inline(always)]
-            fn each(self, value: f64) -> Self {
-                Self(value as $number)
-            }
-
-            #[inline(always)]
-            fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
-                let mut element = [f64::from(self.0)];
-                replace(&mut element);
-                Self(element[0] as $number)
-            }
-
-            #[inline(always)]
-            fn times_plus(self, $factor: Self, $term: Self) -> Self {
-                let $x = self;
-                Self($times_plus)
-            }
-
-            #[inline(always)]
-            fn root(self) -> Self {
-                Self(self.0.sqrt())
-            }
-
-            #[inline(always)]
-            fn size(self) -> Self {
-                Self(self.0.abs())
-            }
-
-            #[inline(always)]
-            fn below(self, other: Self) -> bool {
-                self.0 < other.0
-            }
-
-            #[inline(always)]
-            fn at_most(self, other: Self) -> bool {
-                self.0 <= other.0
-            }
-
-            #[inline(always)]
-            fn select(mask: bool, yes: Self, no: Self) -> Self {
-                if mask { yes } else { no }
-            }
-
-            #[inline(always)]
-            fn nearest(self) -> Self {
-                Self(((f64::from(self.0) + ROUNDER) - ROUNDER) as $number)
-            }
-
-            #[inline(always)]
-            #[allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // eleven bits
-            fn split(self) -> (Self, Self) {
-                let bits = f64::from(self.0).to_bits();
-                let k = (bits.wrapping_sub(ROOT_HALF) as i64) >> 52;
-                let m = f64::from_bits(bits.wrapping_sub((k as u64) << 52));
-                (Self(m as $number), Self(k as $number))
-            }
-
-            #[inline(always)]
-            fn power_of_two(self) -> Self {
-                // The integer stands in the last bits of the sum; 1023 more is its exponent.
-                let bits = (f64::from(self.0) + ROUNDER).to_bits();
-                Self(f64::from_bits(bits.wrapping_add(1023) << 52) as $number)
-            }
-
-            #[inline(always)]
-            fn alternate(self, k: Self) -> Self {
-                let odd = (f64::from(k.0) + ROUNDER).to_bits() << 63;
-                Self(f64::from_bits(f64::from(self.0).to_bits() ^ odd) as $number)
-            }
-
-            #[inline(always)]
-            fn words(self) -> u64 {
-                let [low, _] = apart((f64::from(self.0) + ROUNDER).to_bits());
-                joined([low, low])
-            }
-
-            #[inline(always)]
-            fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-                // Bits, not a branch: what a hash decides cannot be foreseen.
-                let mask = u64::from(words & bits == wanted).wrapping_neg();
-                let (yes, no) = (f64::from(yes.0).to_bits(), f64::from(no.0).to_bits());
-                Self(f64::from_bits(no ^ ((no ^ yes) & mask)) as $number)
-            }
-
-            #[inline(always)]
-            fn negated_where(self, words: u64, bit: u32) -> Self {
-                let sign = words << (63 - bit) & 1 << 63;
-                Self(f64::from_bits(f64::from(self.0).to_bits() ^ sign) as $number)
-            }
-
-            #[inline(always)]
-            fn entry(self, list: &[f64]) -> Self {
-                Self(list[place(f64::from(self.0), list.len())] as $number)
-            }
-
-            #[inline(always)]
-            fn columns(self, table: &[Row]) -> [Self; 5] {
-                let [a, b, c, d, e, ..] = table[place(f64::from(self.0), table.len())].0;
-                [
-                    Self(a as $number),
-                    Self(b as $number),
-                    Self(c as $number),
-                    Self(d as $number),
-                    Self(e as $number),
-                ]
-            }
-
-            $(
-                #[inline(always)]
-                fn $function(self) -> Self {
-                    Self(Lane::$function(f64::from(self.0)) as $number)
-                }
-            )*
-        }
-    };
-    (operators $Number:ident($number:ty): $($Trait:ident::$method:ident),*) => {
+macro_rules! operators {
+    ($($Trait:ident::$method:ident),*) => {
         $(
-            impl $Trait for $Number {
+            impl $Trait for F32 {
                 type Output = Self;
                 #[inline(always)]
                 fn $method(self, other: Self) -> Self {
@@ -218,27 +81,114 @@ macro_rules! single {
                 }
             }
 
-            #[allow(clippy::cast_possible_truncation)] // to 24 bits
-            impl $Trait<f64> for $Number {
+            impl $Trait<f64> for F32 {
                 type Output = Self;
                 #[inline(always)]
                 fn $method(self, other: f64) -> Self {
-                    Self($Trait::$method(self.0, other as $number))
+                    $Trait::$method(self, Self::of(other))
                 }
             }
         )*
     };
 }
+operators!(Add::add, Sub::sub, Mul::mul, Div::div);
 
-single!(Plain(f64), |x, factor, term| x.0 * factor.0 + term.0,);
-single!(Fused(f64), |x, factor, term| x.0.mul_add(factor.0, term.0),);
-// Rounded once, as such hardware does; a product of two such numbers is exact in a double, and the sum with
-// a third is rounded twice only where that is a tie.
-single!(
-    F32(f32),
-    |x, factor, term| (f64::from(x.0) * f64::from(factor.0) + f64::from(term.0)) as f32,
-    ln exp cos sin cos_pi_size
-);
+/// Functions in doubles, whose values are rounded.
+macro_rules! rounded {
+    ($($function:ident($($other:ident)?))*) => {
+        $(
+            #[inline(always)]
+            fn $function(self $(, $other: Self)?) -> Self {
+                Self::of(Lane::$function(self.double() $(, $other.double())?))
+            }
+        )*
+    };
+}
+
+/// What is not arithmetic is done in doubles and rounded.
+#[allow(clippy::cast_possible_truncation)] // to 24 bits
+impl Lane for F32 {
+    type Mask = bool;
+    type Words = u64;
+
+    rounded!(ln() exp() cos() sin() cos_pi_size() nearest() power_of_two() alternate(k));
+
+    #[inline(always)]
+    fn each(self, value: f64) -> Self {
+        Self::of(value)
+    }
+
+    #[inline(always)]
+    fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
+        let mut element = [self.double()];
+        replace(&mut element);
+        Self::of(element[0])
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        // Rounded once, as such hardware does; a product of two such numbers is exact in a double, and the sum with
+        // a third is rounded twice only where that is a tie.
+        Self::of(self.double() * factor.double() + term.double())
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    #[inline(always)]
+    fn below(self, other: Self) -> bool {
+        self.0 < other.0
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self.0 <= other.0
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let (m, k) = Lane::split(self.double());
+        (Self::of(m), Self::of(k))
+    }
+
+    #[inline(always)]
+    fn words(self) -> u64 {
+        self.double().words()
+    }
+
+    #[inline(always)]
+    fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+        Self::of(f64::where_bits(words, bits, wanted, yes.double(), no.double()))
+    }
+
+    #[inline(always)]
+    fn negated_where(self, words: u64, bit: u32) -> Self {
+        Self::of(self.double().negated_where(words, bit))
+    }
+
+    #[inline(always)]
+    fn entry(self, list: &[f64]) -> Self {
+        Self::of(self.double().entry(list))
+    }
+
+    #[inline(always)]
+    fn columns(self, table: &[Row]) -> [Self; 5] {
+        let [a, b, c, d, e] = self.double().columns(table);
+        [Self::of(a), Self::of(b), Self::of(c), Self::of(d), Self::of(e)]
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,12 +1,10 @@
 //! Description of what was drawn: the header of every log, and the keys of experiments.
 
-use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use crate::draw::share::Share;
 use crate::plan::{Plan, Planned, PlannedCase};
 use estimators::DrawBuffer;
-use numeric::pack;
 use numeric::rng::{hash, name_hash};
 use theory::parallel;
 
@@ -20,8 +18,6 @@ pub struct Header {
     pub version: String,
     /// Fingerprint of the program's file.
     pub program: String,
-    /// True if packs multiply and add in one rounding: machines that do make other bits than those that do not.
-    pub is_fused: bool,
     /// Words of the command that asks for these draws.
     pub words: Vec<String>,
     /// Share of the run; `None` for a run's own log.
@@ -41,8 +37,8 @@ pub struct CaseKeys {
 impl Header {
     /// Describes the draws of this program for the plan of a command with these words.
     pub fn new(plan: &Plan, program: &str, words: &[String], share: Option<Share>) -> Self {
-        let (version, is_fused) = (env!("CARGO_PKG_VERSION"), pack::fuses(Level::new()));
-        let made_by = format!("{version} {program} {is_fused}");
+        let version = env!("CARGO_PKG_VERSION");
+        let made_by = format!("{version} {program}");
         let cases = parallel::map(&plan.cases, |case| CaseKeys {
             name: case.case.name.clone(),
             text: case.case.digest,
@@ -53,7 +49,7 @@ impl Header {
                 .collect(),
         });
         let (version, program) = (version.to_owned(), program.to_owned());
-        Self { version, program, is_fused, words: words.to_owned(), share, cases }
+        Self { version, program, words: words.to_owned(), share, cases }
     }
 
     /// Returns the keys of the experiments, in the order of the plan.
@@ -63,7 +59,6 @@ impl Header {
 
     /// Returns why draws of `self` cannot be joined with those of `expected`; `None` if they can.
     pub fn mismatch(&self, expected: &Self) -> Option<String> {
-        let arithmetic = |is_fused| if is_fused { "fused" } else { "plain" }.to_owned();
         let beyond = |these: &Self, others: &Self| {
             let new = these.words.iter().filter(|word| !others.words.contains(word));
             let new: Vec<&str> = new.map(String::as_str).collect();
@@ -71,7 +66,6 @@ impl Header {
         };
         let pairs = [
             ("by version", self.version.clone(), expected.version.clone()),
-            ("by arithmetic that is", arithmetic(self.is_fused), arithmetic(expected.is_fused)),
             ("by the build", self.program.clone(), expected.program.clone()),
             ("with", beyond(self, expected), beyond(expected, self)),
         ];

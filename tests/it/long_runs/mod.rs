@@ -315,7 +315,6 @@ fn every_mismatch_is_named() {
     let others = [
         (Header { version: "0.0.1".into(), ..own.clone() }, "version 0.0.1"),
         (Header { program: "another".into(), ..own.clone() }, "build another"),
-        (Header { is_fused: !own.is_fused, ..own.clone() }, "arithmetic"),
         (header(text, 60_000), "--draws=60000, not --draws=50000"),
         (header(&text.replace("= 1\n", "= 1.25\n"), 50_000), "another text"),
     ];

@@ -1,18 +1,16 @@
 //! Draws of packets equal draws made one by one, to the bit.
 //!
-//! The comparison is made on every level of vector hardware of this machine with fused multiply-add: values, lookups,
-//! defects, and the final states of the streams. Without fused multiply-add the same kernels round differently and are
-//! judged like any estimator. Draws need no prediction, so that all combinations take seconds.
+//! The comparison is made on every level of vector hardware of this machine: values, lookups, defects, and the final states
+//! of the streams. Draws need no prediction, so that all combinations take seconds.
 
 mod rays;
 mod single_scattering;
 mod space;
 
 use crate::common::none;
-use fearless_simd::Level;
 use trueflight::case::Case;
 use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
-use trueflight::numeric::pack::fuses;
+use trueflight::numeric::pack::levels;
 use trueflight::rng::Address;
 
 /// Numbers of draws of consecutive requests, not multiples of any number of lanes.
@@ -46,19 +44,10 @@ fn drawn(experiment: &dyn Experiment, kernel: Kernel, address: Address) -> Vec<u
     bits
 }
 
-/// Returns every level with fused multiply-add, from the best down.
-fn fusing_levels() -> Vec<Level> {
-    let mut levels = vec![Level::new()];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    levels.extend(Level::new().as_avx2().map(Level::Avx2));
-    levels.retain(|&level| fuses(level));
-    levels
-}
-
 /// Compares every estimator of cases, at the first point of a sweep, on all levels. At least `least` comparisons must
 /// be made.
 pub fn compare(cases: &[Case], least: usize) {
-    let (levels, mut wrong, mut compared) = (fusing_levels(), Vec::new(), 0);
+    let (levels, mut wrong, mut compared) = (levels(), Vec::new(), 0);
     for case in cases {
         let swept = case.sweep.as_ref().map(|axis| (axis.what, axis.values[0]));
         for estimator in 0..case.scenario.estimators() {

@@ -14,7 +14,7 @@ use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups};
-use numeric::fused::{Loop, in_own_rounding};
+use numeric::fused::compiled_once;
 use numeric::pair::PAIR_WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, ScalarLane, Span};
@@ -153,31 +153,19 @@ pub fn draw(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<Values> {
-    in_own_rounding(One { steps, setup, medium, random })
-}
-
-struct One<'a, S> {
-    steps: &'a S,
-    setup: &'a Setup<BidirectionalRod>,
-    medium: &'a Lookups<'a>,
-    random: &'a mut Stream,
-}
-
-impl<S: WalkEvents> Loop for One<'_, S> {
-    type Output = Draw<Values>;
-
-    #[inline(always)]
-    fn run<L: ScalarLane>(self) -> Draw<Values> {
-        let Self { steps, setup, medium, random } = self;
-        let (zero, alone) = (L::of(0.0), Alone(medium));
-        if let Some(even) = setup.fields.sampling.with_gaps() {
-            let begin = FlightWithGaps::new(zero, even);
-            through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
-        } else {
-            let begin = FlightOverPieces::new(zero, &setup.fields.sampling);
-            through(steps, Tracker::new(setup, zero, [begin, begin.from_end()], alone), random)
-        }
-    }
+    compiled_once(
+        #[inline(always)]
+        || {
+            let alone = Alone(medium);
+            if let Some(even) = setup.fields.sampling.with_gaps() {
+                let begin = FlightWithGaps::new(0.0, even);
+                through(steps, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
+            } else {
+                let begin = FlightOverPieces::new(0.0, &setup.fields.sampling);
+                through(steps, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
+            }
+        },
+    )
 }
 
 #[inline(always)]

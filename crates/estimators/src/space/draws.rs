@@ -1,7 +1,5 @@
 //! Draws of walks in space: by packs, or one by one.
 
-use std::marker::PhantomData;
-
 use fearless_simd::Level;
 
 use super::events::WalkEvents;
@@ -13,7 +11,7 @@ use crate::walks::{self, plain};
 use crate::{Draw, Request};
 use media::Majorants;
 use numeric::ScalarLane;
-use numeric::fused::{Loop, in_own_rounding};
+use numeric::fused::compiled_once;
 use numeric::rng::{Random, Stream};
 use theory::problems::{Albedo, Channels, Scene};
 
@@ -30,24 +28,10 @@ pub fn draw<V: Channels, T: Tally, const SPLITS: bool>(
     random: &mut Stream,
 ) -> Draw<V> {
     let walk = InSpace::new(tally, steps, world, &[]);
-    in_own_rounding(One::<V, T, _, SPLITS> { walk, splitting, random, values: PhantomData })
-}
-
-struct One<'a, V, T, S, const SPLITS: bool> {
-    walk: InSpace<'a, T, S>,
-    splitting: Splitting,
-    random: &'a mut Stream,
-    values: PhantomData<V>,
-}
-
-impl<V: Channels, T: Tally, S: WalkEvents, const SPLITS: bool> Loop for One<'_, V, T, S, SPLITS> {
-    type Output = Draw<V>;
-
-    #[inline(always)]
-    fn run<L: ScalarLane>(self) -> Draw<V> {
-        let Self { walk, splitting, random, .. } = self;
-        follow::<L, V, T, SPLITS>(&walk, splitting, plain::in_doubles(&walk), random)
-    }
+    compiled_once(
+        #[inline(always)]
+        || follow::<f64, V, T, SPLITS>(&walk, splitting, plain::in_doubles(&walk), random),
+    )
 }
 
 /// Makes one draw in any lane of one number, given the value of a field of the walk at a place.

@@ -7,10 +7,10 @@ use crate::setup::{OnRay, Residual};
 use crate::{Draw, Estimated, Kernel, Request, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Inlined, Lookups, Piecewise};
-use numeric::fused::{Loop, in_fused_code, in_own_rounding};
+use numeric::fused::compiled_once;
 use numeric::pack::{self, Hardware, Task};
 use numeric::rng::Stream;
-use numeric::{Lane, Pair, ScalarLane};
+use numeric::{Lane, Pair};
 use theory::problems::Channels;
 
 /// Maximum number of pieces of σ̂ or of the control for packs. With more, lanes that cross pieces delay the others
@@ -58,37 +58,23 @@ where
     P::Value: Channels,
 {
     let medium = &setup.problem.lookups(Level::new());
-    in_own_rounding(InTurn { walk, setup, medium, request });
-}
-
-struct InTurn<'a, 'r, W, P: Estimated> {
-    walk: &'a W,
-    setup: &'a Setup<P>,
-    medium: &'a Lookups<'a>,
-    request: Request<'r>,
-}
-
-impl<W: Walk, P: Estimated<Fields: OnRay>> Loop for InTurn<'_, '_, W, P>
-where
-    P::Value: Channels,
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: ScalarLane>(self) {
-        let Request { streams, count, buffer } = self.request;
-        buffer.clear();
-        for _ in 0..count {
-            let (sampling, random) = (self.setup.residual().sampling, streams.of_next_draw());
-            buffer.push(&plain::through::<L, W, P::Value>(
-                self.walk,
-                sampling,
-                #[inline(always)]
-                |channel, t| self.medium.channel(channel).extinction(t),
-                random,
-            ));
-        }
-    }
+    let Request { streams, count, buffer } = request;
+    compiled_once(
+        #[inline(always)]
+        || {
+            buffer.clear();
+            for _ in 0..count {
+                let (sampling, random) = (setup.residual().sampling, streams.of_next_draw());
+                buffer.push(&plain::through::<f64, _, P::Value>(
+                    walk,
+                    sampling,
+                    #[inline(always)]
+                    |channel, t| medium.channel(channel).extinction(t),
+                    random,
+                ));
+            }
+        },
+    );
 }
 
 /// Makes the draws of a request by packets, and one by one if these return the request.
@@ -109,7 +95,7 @@ pub fn by<'r, P: Estimated>(
     }
 }
 
-/// Makes the draws of a request one after the other by a function, which `#[inline(always)]` compiles for machines that fuse.
+/// Makes the draws of a request one after the other by a function, which `#[inline(always)]` compiles with fused multiply-add.
 #[inline(always)]
 pub fn one_by_one<P: Estimated>(
     setup: &Setup<P>,
@@ -118,7 +104,7 @@ pub fn one_by_one<P: Estimated>(
 ) {
     let medium = setup.problem.lookups(Level::new());
     let Request { streams, count, buffer } = request;
-    in_fused_code(
+    compiled_once(
         #[inline(always)]
         || {
             buffer.clear();

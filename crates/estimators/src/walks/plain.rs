@@ -1,14 +1,12 @@
 //! The driver of one walk, with one lookup at a time.
 
-use std::marker::PhantomData;
-
 use super::{MAX_OUTCOME, MAX_SCORED, Nowhere, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::Draw;
 use media::body::MAX_CHANNELS;
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups, Piecewise};
 use numeric::ScalarLane;
-use numeric::fused::{Loop, in_own_rounding};
+use numeric::fused::compiled_once;
 use numeric::geometry::Point;
 use numeric::rng::{Random, Stream};
 use theory::problems::Channels;
@@ -21,31 +19,18 @@ pub fn draw<V: Channels>(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<V> {
-    in_own_rounding(One { walk, sampling, medium, random, values: PhantomData })
-}
-
-struct One<'a, W, V> {
-    walk: &'a W,
-    sampling: &'a Piecewise,
-    medium: &'a Lookups<'a>,
-    random: &'a mut Stream,
-    values: PhantomData<V>,
-}
-
-impl<W: Walk, V: Channels> Loop for One<'_, W, V> {
-    type Output = Draw<V>;
-
-    #[inline(always)]
-    fn run<L: ScalarLane>(self) -> Draw<V> {
-        let Self { walk, sampling, medium, random, .. } = self;
-        through::<L, W, V>(
-            walk,
-            sampling,
-            #[inline(always)]
-            |channel, t| medium.channel(channel).extinction(t),
-            random,
-        )
-    }
+    compiled_once(
+        #[inline(always)]
+        || {
+            through::<f64, _, V>(
+                walk,
+                sampling,
+                #[inline(always)]
+                |channel, t| medium.channel(channel).extinction(t),
+                random,
+            )
+        },
+    )
 }
 
 /// Makes one draw in any lane type of a single walk, given σ_t of a channel at a distance.

@@ -21,7 +21,7 @@
 //! JRSS B 86 (2024), sections 4 and 5 (the grid of stakes is their Grid-Kelly).
 
 use super::capital::Gains;
-use numeric::ScalarLane;
+use numeric::Lane;
 use numeric::fused::{self, Loop};
 
 /// Planned stakes against a correct mean in units of ε/V, each with its share of the capital of a side.
@@ -137,28 +137,25 @@ struct Sums<'a> {
 }
 
 impl Loop for Sums<'_> {
-    type Output = ();
-
     #[inline(always)]
-    fn run<L: ScalarLane>(self) {
+    fn run(self) {
         // Products of all factors side by side: a compiler vectorizes the loop over their logarithms.
         let mut products = vec![[0.0; LANES]; self.factors.len()];
         let mut logarithms = products.clone();
         for chunk in self.y.chunks(ROWS * LANES) {
             let (rows, rest) = chunk.as_chunks::<LANES>();
             for (product, factor) in products.iter_mut().zip(self.factors) {
-                let (slope, offset) = (L::of(factor.slope), L::of(factor.offset));
                 let mut lanes = [1.0; LANES];
                 for row in rows {
                     for lane in 0..LANES {
-                        lanes[lane] *= L::of(row[lane]).times_plus(slope, offset).double();
+                        lanes[lane] *= row[lane].times_plus(factor.slope, factor.offset);
                     }
                 }
                 *product = lanes;
             }
             let all = logarithms.as_flattened_mut().iter_mut();
             for (ln, &product) in all.zip(products.as_flattened()) {
-                *ln = L::of(product).ln().double();
+                *ln = Lane::ln(product);
             }
             for (number, factor) in self.factors.iter().enumerate() {
                 let ln = |y: &f64| (factor.offset + factor.slope * y).ln();

@@ -13,7 +13,7 @@
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
 
-use numeric::ScalarLane;
+use numeric::Lane;
 use numeric::fused::{self, Loop};
 
 const LANES: usize = 8;
@@ -101,38 +101,35 @@ struct Counted<'a> {
 }
 
 impl Loop for Counted<'_> {
-    type Output = ();
-
     #[inline(always)]
-    fn run<L: ScalarLane>(self) {
+    fn run(self) {
         let (rows, rest) = self.y.as_chunks::<LANES>();
         let (times, last_times) = self.times.as_chunks::<LANES>();
         for (product, argument) in self.products.iter_mut().zip(self.arguments) {
             let mut sums = [0.0; LANES];
             for (row, times) in rows.iter().zip(times) {
-                let terms = terms::<L, LANES>(row, argument);
+                let terms = terms(row, argument);
                 for lane in 0..LANES {
                     sums[lane] += times[lane] * terms[lane];
                 }
             }
             let lanes: f64 = sums.iter().sum();
             let rest = rest.iter().zip(last_times);
-            product.large +=
-                lanes + rest.map(|(&y, n)| n * terms::<L, 1>(&[y], argument)[0]).sum::<f64>();
+            product.large += lanes + rest.map(|(&y, n)| n * terms(&[y], argument)[0]).sum::<f64>();
         }
     }
 }
 
 /// `ψ(a y + b)` by this crate's own logarithm.
 #[inline(always)]
-fn terms<L: ScalarLane, const N: usize>(y: &[f64; N], argument: &Argument) -> [f64; N] {
+fn terms<const N: usize>(y: &[f64; N], argument: &Argument) -> [f64; N] {
     let (mut terms, mut are_small) = ([0.0; N], true);
     for lane in 0..N {
-        let t = L::of(y[lane]) * argument.slope + argument.shift;
-        let size = t.size();
-        let ln = ((size * 0.5 + 1.0) * size + 1.0).ln();
-        terms[lane] = L::select(t.below(L::of(0.0)), -ln, ln).double();
-        are_small &= size.at_most(L::of(LARGE));
+        let t = y[lane] * argument.slope + argument.shift;
+        let size = t.abs();
+        let ln = Lane::ln((size * 0.5 + 1.0) * size + 1.0);
+        terms[lane] = if t < 0.0 { -ln } else { ln };
+        are_small &= size <= LARGE;
     }
     // NaN, and numbers with an overflowing square, are summed one by one.
     if !are_small {
@@ -152,15 +149,13 @@ struct Each<'a, const N: usize> {
 }
 
 impl<const N: usize> Loop for Each<'_, N> {
-    type Output = ();
-
     #[inline(always)]
-    fn run<L: ScalarLane>(self) {
+    fn run(self) {
         for chunk in self.y.chunks(FLUSH) {
             // All products in memory before exponents are split off: then a compiler keeps the lanes of each in one register.
             let mut next = *self.products;
             for (next, argument) in next.iter_mut().zip(self.arguments) {
-                next.multiply::<L>(chunk, argument);
+                next.multiply(chunk, argument);
             }
             for (number, next) in next.iter_mut().enumerate() {
                 let (product, argument) = (&mut self.products[number], &self.arguments[number]);
@@ -183,30 +178,30 @@ impl<const N: usize> Loop for Each<'_, N> {
 ///
 /// Each product is too large by 2 per draw, which cancels between them.
 #[inline(always)]
-fn factors<L: ScalarLane>(y: f64, argument: &Argument) -> (f64, f64) {
-    let t = L::of(y).times_plus(L::of(argument.slope), L::of(argument.shift));
-    let root = t.size() + 1.0;
-    let factor = root.times_plus(root, L::of(1.0)).double();
-    if t.below(L::of(0.0)) { (2.0, factor) } else { (factor, 2.0) }
+fn factors(y: f64, argument: &Argument) -> (f64, f64) {
+    let t = y.times_plus(argument.slope, argument.shift);
+    let root = t.abs() + 1.0;
+    let factor = root.times_plus(root, 1.0);
+    if t < 0.0 { (2.0, factor) } else { (factor, 2.0) }
 }
 
 impl Product {
     /// Multiplies by the factors of draws.
     #[inline(always)]
-    fn multiply<L: ScalarLane>(&mut self, y: &[f64], argument: &Argument) {
+    fn multiply(&mut self, y: &[f64], argument: &Argument) {
         let (rows, rest) = y.as_chunks::<LANES>();
         // Copies for the loop, which keeps them in registers.
         let (mut above, mut below) = (self.above, self.below);
         for row in rows {
             for lane in 0..LANES {
-                let (up, down) = factors::<L>(row[lane], argument);
+                let (up, down) = factors(row[lane], argument);
                 above[lane] *= up;
                 below[lane] *= down;
             }
         }
         (self.above, self.below) = (above, below);
         for (lane, &y) in rest.iter().enumerate() {
-            let (up, down) = factors::<L>(y, argument);
+            let (up, down) = factors(y, argument);
             self.above[lane] *= up;
             self.below[lane] *= down;
         }

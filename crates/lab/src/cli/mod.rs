@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use trueflight::cli::help::{DONE, HelpEnd, with_ends};
-use trueflight::cli::{Console, USAGE, output};
+use trueflight::cli::{Console, USAGE, can_draw, output};
 
 /// Test Trueflight itself: its gate, its known bugs, and its numbers under stress.
 #[derive(Debug, Parser)]
@@ -81,12 +81,12 @@ pub fn run_as<T: Into<OsString> + Clone>(
 
 fn carry_out(cli: &Cli) -> ExitCode {
     let console = &cli.console;
-    let done = match &cli.command {
+    let done = can_draw().and_then(|()| match &cli.command {
         Task::SelfTest(arguments) => run::self_test(arguments, console),
         Task::Stress(arguments) => run::stress(arguments, console),
         Task::List(arguments) => known_bugs::list(arguments, console),
         Task::Explain(arguments) => known_bugs::explain(arguments, console),
-    };
+    });
     done.map_or_else(
         |error| {
             output::complain(&error);

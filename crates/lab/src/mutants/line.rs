@@ -23,7 +23,7 @@ use estimators::walks::{Route, TentativeCollision, Walk};
 use estimators::{Draw, Estimated, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Control, Extinction, Lookups, Piecewise};
-use numeric::fused::{Loop, in_own_rounding};
+use numeric::fused::compiled_once;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, ScalarLane, Span};
 use theory::problems::Channels;
@@ -136,7 +136,10 @@ pub fn draw<P: Estimated<Fields = ControlledLine, Value: Channels>>(
     medium: &Lookups,
     random: &mut Stream,
 ) -> Draw<P::Value> {
-    in_own_rounding(One { walk, slip, setup, medium, random })
+    compiled_once(
+        #[inline(always)]
+        || One { walk, slip, setup, medium, random }.draw(),
+    )
 }
 
 struct One<'a, W, P: Estimated> {
@@ -147,20 +150,16 @@ struct One<'a, W, P: Estimated> {
     random: &'a mut Stream,
 }
 
-impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> Loop for One<'_, W, P> {
-    type Output = Draw<P::Value>;
-
+impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W, P> {
     #[inline(always)]
-    fn run<L: ScalarLane>(self) -> Draw<P::Value> {
+    fn draw(self) -> Draw<P::Value> {
         let sampling = &self.setup.fields.sampling;
         match sampling.with_gaps() {
-            Some(even) => self.along(FlightWithGaps::new(L::of(0.0), even)),
-            None => self.along(FlightOverPieces::new(L::of(0.0), sampling)),
+            Some(even) => self.along(FlightWithGaps::new(0.0, even)),
+            None => self.along(FlightOverPieces::new(0.0, sampling)),
         }
     }
-}
 
-impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W, P> {
     #[inline(always)]
     fn along<L: ScalarLane>(self, course: impl BothWays<L>) -> Draw<P::Value> {
         let Self { walk, slip, setup, medium, random } = self;

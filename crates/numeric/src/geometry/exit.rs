@@ -10,7 +10,6 @@
 use std::ops::RangeInclusive;
 
 use super::{Aabb, Bounds, Point, Ray, grazing};
-use crate::fused::fuses;
 use crate::lane::WIDTH;
 use crate::{Kept, Lane, Mask};
 
@@ -74,7 +73,7 @@ pub fn chords<L: Lane>(
         return [from, to];
     }
     let mut chord = [from, to];
-    if fuses() && SIZES.contains(&radius) {
+    if SIZES.contains(&radius) {
         chord.set_where(
             is_grazing,
             to.outlined(

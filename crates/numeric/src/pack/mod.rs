@@ -61,7 +61,7 @@ pub trait PackedWords: xoshiro::Words<Numbers: Lane<Mask = Self::Mask>> {
 
 /// Returns true if a level has packs.
 #[inline(always)]
-pub fn fuses(level: Level) -> bool {
+pub fn has_packs(level: Level) -> bool {
     #[cfg(target_arch = "x86_64")]
     return level.as_avx2().is_some();
     #[cfg(target_arch = "aarch64")]

@@ -21,7 +21,7 @@ use std::collections::VecDeque;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use numeric::rng::{Random, Stream};
-use numeric::{F32, Fused, Lane, Row, ScalarLane};
+use numeric::{F32, Lane, Row, ScalarLane};
 
 /// Double or single precision.
 pub trait Precision: ScalarLane {
@@ -29,7 +29,7 @@ pub trait Precision: ScalarLane {
     const LATTICE: f64;
 }
 
-impl Precision for Fused {
+impl Precision for f64 {
     const LATTICE: f64 = 9_007_199_254_740_992.0;
 }
 

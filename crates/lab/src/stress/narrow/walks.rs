@@ -31,9 +31,9 @@ use estimators::walks::{Walk, plain};
 use estimators::{Draw, Estimated, Setup};
 use fearless_simd::Level;
 use media::Majorants;
-use numeric::fused::in_fused_code;
+use numeric::fused::compiled_once;
 use numeric::rng::{Address, name_hash};
-use numeric::{F32, Fused, ScalarLane as _};
+use numeric::{F32, ScalarLane as _};
 use theory::ParticleRule;
 use theory::ParticleRule::{Analog, NonTerminating, Weighted};
 use theory::collisions::rules::{Collision, Null, Single, Weight};
@@ -75,7 +75,7 @@ impl<D: Draws> InBoth for D {
         let experiment = name_hash("stress|narrow");
         let stream = Address { seed, experiment, block: walk, lane: 0 }.stream();
         let trail = Trail::new(stream, of.is_kept);
-        let double = weighted::<_, Fused>(self, of, &trail)?;
+        let double = weighted::<_, f64>(self, of, &trail)?;
         let words = trail.words();
         let single = weighted::<_, F32>(self, of, &trail.again(stream))?;
         Some(([double, single], words))
@@ -85,7 +85,7 @@ impl<D: Draws> InBoth for D {
 /// A draw with its likelihood: compiled once for each precision.
 #[inline(never)]
 fn weighted<D: Draws, N: Precision>(draws: &D, of: Subject, trail: &Trail) -> Option<f64> {
-    let draw = in_fused_code(
+    let draw = compiled_once(
         #[inline(always)]
         || draws.draw::<N>(of, trail),
     );
