@@ -110,8 +110,7 @@ pub fn horner<L: Lane, const N: usize>(x: L, c: &[f64; N]) -> L {
 /// The terms 2i and 2i + 1 over `x^2i`.
 #[inline(always)]
 fn pair<L: Lane, const N: usize>(i: usize, x: L, c: &[f64; N]) -> L {
-    let low = x.each(c[2 * i]);
-    if 2 * i + 1 < N { x.each(c[2 * i + 1]).times_plus(x, low) } else { low }
+    if 2 * i + 1 < N { x.linear(c[2 * i + 1], c[2 * i]) } else { x.each(c[2 * i]) }
 }
 
 /// Natural logarithm of a positive, normal double.

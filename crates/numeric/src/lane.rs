@@ -95,6 +95,13 @@ pub trait Lane:
     #[must_use]
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
+    /// `slope · self + offset`, rounded once.
+    #[must_use]
+    #[inline(always)]
+    fn linear(self, slope: f64, offset: f64) -> Self {
+        self.each(slope).times_plus(self, self.each(offset))
+    }
+
     /// `Σ cₙ selfⁿ`.
     #[must_use]
     #[inline(always)]

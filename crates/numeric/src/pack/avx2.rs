@@ -3,14 +3,13 @@
 use std::arch::x86_64::{
     __m256d, __m256i, _CMP_LE_OQ, _CMP_LT_OQ, _MM_FROUND_NO_EXC, _MM_FROUND_TO_NEAREST_INT,
     _mm_cvtsi32_si128, _mm256_add_epi32, _mm256_add_epi64, _mm256_add_pd, _mm256_and_pd,
-    _mm256_and_si256, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_castpd_si256,
-    _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_cmpeq_epi64, _mm256_div_pd, _mm256_fmadd_pd,
-    _mm256_max_pd, _mm256_min_epu32, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd,
-    _mm256_mullo_epi32, _mm256_or_pd, _mm256_or_si256, _mm256_permute2f128_pd, _mm256_round_pd,
-    _mm256_set1_epi32, _mm256_set1_epi64x, _mm256_set1_pd, _mm256_setr_epi64x, _mm256_sll_epi64,
-    _mm256_slli_epi64, _mm256_sqrt_pd, _mm256_srl_epi32, _mm256_srl_epi64, _mm256_srli_epi64,
-    _mm256_sub_epi64, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd,
-    _mm256_xor_si256,
+    _mm256_and_si256, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd,
+    _mm256_cmp_pd, _mm256_cmpeq_epi64, _mm256_div_pd, _mm256_fmadd_pd, _mm256_max_pd,
+    _mm256_min_epu32, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_mullo_epi32,
+    _mm256_or_pd, _mm256_or_si256, _mm256_permute2f128_pd, _mm256_round_pd, _mm256_set1_epi32,
+    _mm256_set1_epi64x, _mm256_set1_pd, _mm256_setr_epi64x, _mm256_sll_epi64, _mm256_slli_epi64,
+    _mm256_sqrt_pd, _mm256_srl_epi32, _mm256_srl_epi64, _mm256_srli_epi64, _mm256_sub_epi64,
+    _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd, _mm256_xor_si256,
 };
 
 use fearless_simd::{Avx2, SimdBase, SimdInto, f64x4, kernel, u64x4};
@@ -70,6 +69,9 @@ halves! {
     fn subtract_from_one(x: Pack) -> Pack { _mm256_sub_pd(_mm256_set1_pd(1.0), x) }
     fn negate(x: Pack) -> Pack { _mm256_xor_pd(x, _mm256_set1_pd(-0.0)) }
     fn times_plus(x: Pack, y: Pack, z: Pack) -> Pack { _mm256_fmadd_pd(x, y, z) }
+    fn linear(x: Pack; c: [f64; 2]) -> Pack {
+        _mm256_fmadd_pd(_mm256_set1_pd(c[0]), x, _mm256_set1_pd(c[1]))
+    }
     fn root(x: Pack) -> Pack { _mm256_sqrt_pd(x) }
     fn size(x: Pack) -> Pack { _mm256_andnot_pd(_mm256_set1_pd(-0.0), x) }
     fn maximum(x: Pack, y: Pack) -> Pack { _mm256_max_pd(x, y) }

@@ -5,13 +5,13 @@ use std::arch::x86_64::{
     _mm_cvtsi32_si128, _mm512_add_epi32, _mm512_add_epi64, _mm512_add_pd, _mm512_and_pd,
     _mm512_and_si512, _mm512_andnot_pd, _mm512_castpd_si512, _mm512_castpd256_pd512,
     _mm512_castsi512_pd, _mm512_cmp_pd_mask, _mm512_cmpeq_epi64_mask, _mm512_cvtepi64_pd,
-    _mm512_cvtepu64_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_insertf64x4, _mm512_mask_blend_epi64,
-    _mm512_mask_blend_pd, _mm512_max_pd, _mm512_min_epu32, _mm512_min_pd, _mm512_mul_pd,
-    _mm512_mullo_epi32, _mm512_or_si512, _mm512_permutex2var_pd, _mm512_roundscale_pd,
-    _mm512_set1_epi32, _mm512_set1_epi64, _mm512_set1_pd, _mm512_setr_epi64, _mm512_sll_epi64,
-    _mm512_slli_epi64, _mm512_sqrt_pd, _mm512_srai_epi64, _mm512_srl_epi32, _mm512_srl_epi64,
-    _mm512_srli_epi64, _mm512_sub_epi64, _mm512_sub_pd, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
-    _mm512_xor_pd, _mm512_xor_si512,
+    _mm512_cvtepu64_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_insertf64x4,
+    _mm512_mask_blend_epi64, _mm512_mask_blend_pd, _mm512_max_pd, _mm512_min_epu32, _mm512_min_pd,
+    _mm512_mul_pd, _mm512_mullo_epi32, _mm512_or_si512, _mm512_permutex2var_pd,
+    _mm512_roundscale_pd, _mm512_set1_epi32, _mm512_set1_epi64, _mm512_set1_pd, _mm512_setr_epi64,
+    _mm512_sll_epi64, _mm512_slli_epi64, _mm512_sqrt_pd, _mm512_srai_epi64, _mm512_srl_epi32,
+    _mm512_srl_epi64, _mm512_srli_epi64, _mm512_sub_epi64, _mm512_sub_pd, _mm512_unpackhi_pd,
+    _mm512_unpacklo_pd, _mm512_xor_pd, _mm512_xor_si512,
 };
 
 use fearless_simd::{Avx512, SimdBase, SimdInto, f64x4, f64x8, kernel, u64x8};
@@ -67,6 +67,9 @@ whole! {
     fn subtract_from_one(x: Pack) -> Pack { _mm512_sub_pd(_mm512_set1_pd(1.0), x) }
     fn negate(x: Pack) -> Pack { _mm512_xor_pd(x, _mm512_set1_pd(-0.0)) }
     fn times_plus(x: Pack, y: Pack, z: Pack) -> Pack { _mm512_fmadd_pd(x, y, z) }
+    fn linear(x: Pack; c: [f64; 2]) -> Pack {
+        _mm512_fmadd_pd(_mm512_set1_pd(c[0]), x, _mm512_set1_pd(c[1]))
+    }
     fn root(x: Pack) -> Pack { _mm512_sqrt_pd(x) }
     fn size(x: Pack) -> Pack { _mm512_andnot_pd(_mm512_set1_pd(-0.0), x) }
     fn maximum(x: Pack, y: Pack) -> Pack { _mm512_max_pd(x, y) }

@@ -7,6 +7,23 @@
 /// most of the time of compiling a kernel.
 macro_rules! lanes {
     ($Level:ident, is one register: $is_one_register:literal) => {
+        // Of several operations each: the compiler then simplifies them before it inlines them, once for all kernels.
+        lanes!(functions at $Level: ln exp cos sin);
+
+        fearless_simd::kernel! {
+            #[inline(always)]
+            fn next(simd: $Level, state: [Words; 4]) -> ([Words; 4], Words) {
+                crate::rng::xoshiro::next(state)
+            }
+        }
+
+        fearless_simd::kernel! {
+            #[inline(always)]
+            fn uniform_where(simd: $Level, which: Bools, state: [Words; 4]) -> ([Words; 4], Pack) {
+                super::streams::uniform_where(which, state)
+            }
+        }
+
         impl Hardware for $Level {
             type Pack = Pack;
             type Mask = Bools;
@@ -101,6 +118,11 @@ macro_rules! lanes {
             fn upper(self) -> Pack {
                 upper(self.simd, self)
             }
+
+            #[inline(always)]
+            fn next(state: [Self; 4]) -> ([Self; 4], Self) {
+                next(state[0].simd, state)
+            }
         }
 
         impl super::PackedWords for Words {
@@ -109,6 +131,11 @@ macro_rules! lanes {
             #[inline(always)]
             fn select(which: Bools, yes: Self, no: Self) -> Self {
                 select_words(which.simd, which, yes, no)
+            }
+
+            #[inline(always)]
+            fn uniform_where(which: Bools, state: [Self; 4]) -> ([Self; 4], Pack) {
+                uniform_where(which.simd, which, state)
             }
 
             #[inline(always)]
@@ -154,6 +181,15 @@ macro_rules! lanes {
                 or_less(other) = minimum;
                 one_minus() = subtract_from_one;
                 sealed() = sealed;
+                ln() = ln;
+                exp() = exp;
+                cos() = cos;
+                sin() = sin;
+            }
+
+            #[inline(always)]
+            fn linear(self, slope: f64, offset: f64) -> Self {
+                linear(self.simd, self, [slope, offset])
             }
 
             #[inline(always)]
@@ -260,6 +296,14 @@ macro_rules! lanes {
                 [first, second, third, fourth, load(self.simd, &fifth)]
             }
         }
+    };
+    (functions at $Level:ident: $($function:ident)*) => {
+        $(fearless_simd::kernel! {
+            #[inline(always)]
+            fn $function(simd: $Level, x: Pack) -> Pack {
+                crate::elementary::$function(x)
+            }
+        })*
     };
     (operators of $Type:ident: $($Operator:ident::$of:ident = $function:ident),*) => {
         $(impl std::ops::$Operator for $Type {

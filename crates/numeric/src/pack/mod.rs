@@ -17,10 +17,10 @@ use std::sync::atomic::AtomicU64;
 
 use fearless_simd::{Level, Simd};
 
+use super::Lane;
 use super::mask::Mask;
 use super::rng::xoshiro;
 use super::words::{Words32, apart};
-use super::Lane;
 
 pub use super::lane::WIDTH;
 pub use streams::Lanes;
@@ -55,6 +55,8 @@ pub trait PackedWords: xoshiro::Words<Numbers: Lane<Mask = Self::Mask>> {
     /// `yes` where the mask says so, else `no`.
     #[must_use]
     fn select(which: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Uniform numbers for the elements that a mask selects, and the state of the streams after them.
+    fn uniform_where(which: Self::Mask, state: [Self; 4]) -> ([Self; 4], Self::Numbers);
     /// Writes the words to a row.
     fn store(self, row: &mut [u64; WIDTH]);
 }

@@ -54,6 +54,11 @@ impl PackedWords for Words {
     }
 
     #[inline(always)]
+    fn uniform_where(which: Bools, state: [Self; 4]) -> ([Self; 4], Pack) {
+        super::streams::uniform_where(which, state)
+    }
+
+    #[inline(always)]
     fn store(self, row: &mut [u64; WIDTH]) {
         self.store_slice(row);
     }

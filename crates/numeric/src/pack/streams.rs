@@ -52,6 +52,24 @@ impl Streams {
     }
 }
 
+/// The states after uniform numbers for the elements that a mask selects, and the numbers.
+#[inline(always)]
+pub(super) fn uniform_where<W: PackedWords>(
+    which: W::Mask,
+    [a, b, c, d]: [W; 4],
+) -> ([W; 4], W::Numbers) {
+    let mut streams = Xoshiro::at([a, b, c, d]);
+    let number = Xoshiro::uniform(&mut streams);
+    let [e, f, g, h] = streams.state;
+    let state = [
+        W::select(which, e, a),
+        W::select(which, f, b),
+        W::select(which, g, c),
+        W::select(which, h, d),
+    ];
+    (state, number)
+}
+
 impl<W: PackedWords> Random<W::Numbers> for Xoshiro<W> {
     #[inline(always)]
     fn uniform(&mut self) -> W::Numbers {
@@ -65,15 +83,8 @@ impl<W: PackedWords> Random<W::Numbers> for Xoshiro<W> {
 
     #[inline(always)]
     fn uniform_where(&mut self, which: W::Mask) -> W::Numbers {
-        let [a, b, c, d] = self.state;
-        let number = Xoshiro::uniform(self);
-        let [e, f, g, h] = self.state;
-        self.state = [
-            W::select(which, e, a),
-            W::select(which, f, b),
-            W::select(which, g, c),
-            W::select(which, h, d),
-        ];
+        let (state, number) = W::uniform_where(which, self.state);
+        self.state = state;
         number
     }
 

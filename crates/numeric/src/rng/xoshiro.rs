@@ -38,6 +38,20 @@ pub trait Words:
     fn plus(self, other: Self) -> Self;
     /// The upper 53 bits as an integer.
     fn upper(self) -> Self::Numbers;
+
+    /// See [`next`].
+    #[inline(always)]
+    fn next(state: [Self; 4]) -> ([Self; 4], Self) {
+        next(state)
+    }
+}
+
+/// The state after one, and the word.
+#[inline(always)]
+pub fn next<W: Words>([s0, s1, s2, s3]: [W; 4]) -> ([W; 4], W) {
+    let word = s0.plus(s3);
+    let (s2, s3) = (s2 ^ s0, s3 ^ s1);
+    ([s0 ^ s3, s1 ^ s2, s2 ^ (s1 << 17), (s3 << 45) | (s3 >> 19)], word)
 }
 
 impl Words for u64 {
@@ -76,10 +90,8 @@ impl<W: Words> Xoshiro<W> {
     /// The next word.
     #[inline(always)]
     pub fn word(&mut self) -> W {
-        let [s0, s1, s2, s3] = self.state;
-        let word = s0.plus(s3);
-        let (s2, s3) = (s2 ^ s0, s3 ^ s1);
-        self.state = [s0 ^ s3, s1 ^ s2, s2 ^ (s1 << 17), (s3 << 45) | (s3 >> 19)];
+        let (state, word) = W::next(self.state);
+        self.state = state;
         word
     }
 
