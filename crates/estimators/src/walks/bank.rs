@@ -164,12 +164,7 @@ impl<L: Lane, C: BothWays<L>> Pack<L, C> {
 
     /// Replaces the walks that ended.
     #[inline(always)]
-    fn restart<W: Walk>(
-        &mut self,
-        walk: &W,
-        state: &mut W::State<L>,
-        random: &mut impl Random<L>,
-    ) {
+    fn restart<W: Walk>(&mut self, walk: &W, state: &mut W::State<L>, random: &mut impl Random<L>) {
         let ended = !self.goes_on;
         walk.restart(state, ended, self.from.each(1.0), random);
         self.route.here.restart(ended);
@@ -226,12 +221,7 @@ impl Rows {
 
     /// Writes the draws of some lanes, as bits; returns the lanes that have made their last one.
     #[inline(never)]
-    fn write(
-        &self,
-        [ended, inside]: [u64; 2],
-        slots: &mut Slots,
-        buffer: &mut DrawBuffer,
-    ) -> u64 {
+    fn write(&self, [ended, inside]: [u64; 2], slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         slots.fill(ended, |slot| {
             for (channel, row) in buffer.values.iter_mut().zip(&self.values) {
                 channel[slot.draw] = row[slot.lane];
@@ -331,8 +321,7 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
         |lanes| lanes.awake(simd),
     );
     // Two names, no array: an index keeps an array in memory, and AVX2 then uses masked stores.
-    let (mut pack, mut other) =
-        (Pack::new::<W, S>(simd, course), Pack::new::<W, S>(simd, course));
+    let (mut pack, mut other) = (Pack::new::<W, S>(simd, course), Pack::new::<W, S>(simd, course));
     let (one, all) = (simd.splat(1.0), simd.mask(u64::MAX));
     let mut state = walk.begin(one, all, &mut first);
     let mut other_state = walk.begin(one, all, &mut second);

@@ -226,8 +226,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
             );
         }
         match medium.inlined() {
-            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && S::IS_ONE_REGISTER } =>
-            {
+            Some(Inlined::Eq21(field)) if const { W::INLINES_EQ21 && S::IS_ONE_REGISTER } => {
                 in_window(
                     simd,
                     *walk,
@@ -237,8 +236,7 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
                     request,
                 );
             }
-            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && S::IS_ONE_REGISTER } =>
-            {
+            Some(Inlined::Grid(field)) if const { W::INLINES_GRID && S::IS_ONE_REGISTER } => {
                 in_window(
                     simd,
                     *walk,

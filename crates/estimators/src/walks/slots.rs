@@ -1,7 +1,7 @@
 //! Draws that lanes have to make, and the streams that they leave.
 
-use numeric::pack::{Hardware, PackedWords, WIDTH};
-use numeric::rng::{LANES, Streams, Xoshiro};
+use numeric::pack::{Hardware, Lanes, PackedWords, WIDTH};
+use numeric::rng::{LANES, Stream, Streams, Xoshiro};
 
 /// The streams of a pack.
 pub type Numbers<S> = Xoshiro<<S as Hardware>::Words>;
@@ -81,12 +81,16 @@ impl Slots {
 #[inline(always)]
 pub fn leave(streams: &mut Streams, pack: usize, which: u64, now: Xoshiro<impl PackedWords>) {
     if which != 0 {
-        let now = now.at_rest().apart();
-        let lanes = &mut streams.lanes[pack * WIDTH..];
-        for (lane, (stream, now)) in lanes.iter_mut().zip(now).enumerate() {
-            if which >> lane & 1 == 1 {
-                *stream = now;
-            }
+        set(&mut streams.lanes[pack * WIDTH..], which, &now.at_rest());
+    }
+}
+
+/// Sets some of the streams, as bits.
+#[inline(never)]
+fn set(streams: &mut [Stream], which: u64, now: &Lanes) {
+    for (lane, (stream, now)) in streams.iter_mut().zip(now.apart()).enumerate() {
+        if which >> lane & 1 == 1 {
+            *stream = now;
         }
     }
 }

@@ -18,12 +18,15 @@ use fearless_simd::{Simd, SimdBase, SimdMask, u8x64};
 use super::{Route, TentativeCollision, Walk};
 use crate::Request;
 use media::sampling::BothWays;
-use numeric::pack::{self, Hardware, WIDTH};
+use numeric::pack::{self, Hardware, Lanes, WIDTH};
 use numeric::rng::{LANES, PACKS, Random, Stream, Xoshiro};
 use numeric::{Lane, Mask, Pair};
 
 /// Number of steps between two searches for walks that ended; the bits of a lane in them fit into a word.
 const STEPS: usize = 64;
+
+/// The streams of a pack.
+type Streams<S> = Xoshiro<<S as Hardware>::Words>;
 
 /// The value of each lane, and its defect or, where walks pause, its lookups.
 #[derive(Clone, Copy, Default)]
@@ -138,18 +141,26 @@ struct Ahead<S: Hardware> {
 
 impl<S: Hardware> Ahead<S> {
     #[inline(always)]
-    fn find(&mut self, step: usize, streams: &mut Xoshiro<S::Words>, decides: bool) {
+    fn find(&mut self, step: usize, streams: &mut Streams<S>, decides: bool) {
         self.logarithms[step] = streams.ln_uniform();
         if decides {
             self.decisions[step] = streams.uniform();
         }
     }
 
+    /// Finds all numbers; returns the streams after them. A reference to the streams would keep them in memory.
     #[inline(always)]
-    fn find_all(&mut self, streams: &mut Xoshiro<S::Words>, decides: bool) {
-        for step in 0..STEPS {
-            self.find(step, streams, decides);
-        }
+    fn find_all(&mut self, simd: S, mut streams: Streams<S>, decides: bool) -> Streams<S> {
+        pack::outlined(
+            simd,
+            #[inline(always)]
+            move || {
+                for step in 0..STEPS {
+                    self.find(step, &mut streams, decides);
+                }
+                streams
+            },
+        )
     }
 }
 
@@ -163,15 +174,15 @@ struct Window<S: Hardware> {
     /// A bit for each lane that looked σ_t up in the step.
     inside: [u8; STEPS],
     /// The streams at the first step.
-    before: Xoshiro<S::Words>,
+    before: Streams<S>,
 }
 
 impl<S: Hardware> Window<S> {
     #[inline(always)]
-    fn open(simd: S, streams: &mut Xoshiro<S::Words>, decides: bool) -> Self {
+    fn open(simd: S, streams: &mut Streams<S>, decides: bool) -> Self {
         let (before, none) = (*streams, [simd.splat(0.0); STEPS]);
         let mut ahead = Ahead { logarithms: none, decisions: none };
-        ahead.find_all(streams, decides);
+        *streams = ahead.find_all(simd, before, decides);
         let rows = [Row::default(); STEPS];
         Self { ahead, rows, ended: [0; STEPS], inside: [0; STEPS], before }
     }
@@ -181,7 +192,7 @@ impl<S: Hardware> Window<S> {
     fn numbers(
         &mut self,
         step: usize,
-        streams: &mut Xoshiro<S::Words>,
+        streams: &mut Streams<S>,
         decides: bool,
     ) -> Numbers<S::Pack> {
         let depth = -self.ahead.logarithms[step];
@@ -209,29 +220,37 @@ impl<S: Hardware> Window<S> {
     fn turn<W: Walk>(
         &mut self,
         simd: S,
-        next: Xoshiro<S::Words>,
-        streams: &mut Xoshiro<S::Words>,
+        next: Streams<S>,
+        streams: &mut Streams<S>,
         (draws, lanes): (&mut Draws<'_>, &mut [Stream]),
         pack: usize,
     ) {
         let over = draws.collect::<W>(pack, &self.rows, &by_lanes(simd, &self.ended, &self.inside));
         if over != [0; WIDTH] {
             let words = if W::DECIDES { 2 } else { 1 };
-            let before = self.before.at_rest().apart();
-            let lanes = &mut lanes[pack * WIDTH..];
-            for ((stream, before), steps) in lanes.iter_mut().zip(before).zip(over) {
-                if steps > 0 {
-                    *stream = before;
-                    for _ in 0..steps * words {
-                        stream.word();
-                    }
-                }
-            }
+            leave(
+                &mut lanes[pack * WIDTH..],
+                &self.before.at_rest(),
+                &over.map(|steps| steps * words),
+            );
         }
         self.before = next;
         if !W::DECIDES {
             // In a separate loop, so that all values of a step stay in registers.
-            self.ahead.find_all(streams, false);
+            *streams = self.ahead.find_all(simd, *streams, false);
+        }
+    }
+}
+
+/// Sets streams of a pack to where they are after some words. Streams of no words stay as they are.
+#[inline(never)]
+fn leave(streams: &mut [Stream], before: &Lanes, words: &[usize; WIDTH]) {
+    for ((stream, before), &words) in streams.iter_mut().zip(before.apart()).zip(words) {
+        if words > 0 {
+            *stream = before;
+            for _ in 0..words {
+                stream.word();
+            }
         }
     }
 }
