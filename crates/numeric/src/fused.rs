@@ -60,7 +60,7 @@ instructions! {
     }
 }
 
-/// What a processor lacks on which nothing can be [`compiled_once`]; `None` if it lacks nothing.
+/// Returns the instructions that this processor lacks and code that is [`compiled_once`] needs; `None` if it has all.
 pub fn missing() -> Option<&'static str> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     return Avx2::find().is_none().then_some("AVX2 and fused multiply-add (x86-64-v3)");
@@ -84,11 +84,11 @@ pub fn in_fused_code<R>(compute: impl FnOnce() -> R) -> R {
 ///
 /// # Panics
 ///
-/// If the processor has something [`missing`]. The command says so and ends before it comes here.
+/// If instructions are [`missing`]. The command says so and ends before it comes here.
 #[inline(always)]
 pub fn compiled_once<R>(compute: impl FnOnce() -> R) -> R {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    return Avx2::find().unwrap_or_else(|| lacking()).run(compute);
+    return Avx2::find().unwrap_or_else(lacking).run(compute);
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
     compute()
 }

@@ -93,7 +93,7 @@ macro_rules! operators {
 }
 operators!(Add::add, Sub::sub, Mul::mul, Div::div);
 
-/// Functions in doubles, whose values are rounded.
+/// Functions in doubles, with a rounding of their values.
 macro_rules! rounded {
     ($($function:ident($($other:ident)?))*) => {
         $(

@@ -118,9 +118,8 @@ halves! {
         _mm256_or_pd(x, _mm256_castsi256_pd(_mm256_set1_epi64x(bits.cast_signed())))
     }
     fn are_bits(words: Words; bits: [u64; 2]) -> Bools {
-        let [bits, wanted] = bits.map(u64::cast_signed);
-        let found = _mm256_and_si256(words, _mm256_set1_epi64x(bits));
-        _mm256_castsi256_pd(_mm256_cmpeq_epi64(found, _mm256_set1_epi64x(wanted)))
+        let found = _mm256_and_si256(words, _mm256_set1_epi64x(bits[0].cast_signed()));
+        _mm256_castsi256_pd(_mm256_cmpeq_epi64(found, _mm256_set1_epi64x(bits[1].cast_signed())))
     }
     fn negate_where(x: Pack, words: Words; bit: u32) -> Pack {
         let shifted = _mm256_sll_epi64(words, count(63 - bit));
@@ -277,8 +276,10 @@ fn transposed([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
 kernel! {
     #[inline(always)]
     fn columns(simd: Avx2, rows: [&Row; WIDTH]) -> [Pack; 4] {
-        let [a, b, c, d, e, f, g, h] = rows.map(|row| f64x4::from_slice(simd, &row.0[..4]).into());
-        let ([a, b, c, d], [e, f, g, h]) = (transposed([a, b, c, d]), transposed([e, f, g, h]));
+        let low = |row: &Row| f64x4::from_slice(simd, &row.0[..4]).into();
+        let [a, b, c, d, e, f, g, h] = rows;
+        let [a, b, c, d] = transposed([low(a), low(b), low(c), low(d)]);
+        let [e, f, g, h] = transposed([low(e), low(f), low(g), low(h)]);
         let pack = |low, high| Pack { low, high, simd };
         [pack(a, e), pack(b, f), pack(c, g), pack(d, h)]
     }
