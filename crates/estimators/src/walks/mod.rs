@@ -18,6 +18,11 @@
 //! | [`window`] | 16 | walks whose steps all take the same random numbers: no step has a branch |
 //! | [`bank`] | 16 | all other walks |
 //!
+//! Packs take most of the time in which this crate is compiled. A family of walks has them on two conditions. They draw at
+//! least twice as fast as one lane. And its draws are 1 % of the built-in suite or of pictures, or its packs are compiled in
+//! 2 s. AVX-512 is there beside AVX2 if it is at least 1.2 times as fast. `trueflight bench --level` measures both; so far
+//! all families have both. Constants of a [`Walk`] say for which courses and fields packs are compiled.
+//!
 //! Fields are looked up along the ray, in space, or in both places: a shadow ray leaves the ray of the camera.
 //! Expensive events may wait. A walk stores the lanes that need one, and handles it when
 //! [`are_enough`](numeric::Mask::are_enough) of a pack do; the other lanes go on. A walk may be scored at its end or
