@@ -148,7 +148,8 @@ mod tests {
 
     fn buffer(value: impl Fn(u32) -> f64) -> DrawBuffer {
         let mut buffer = DrawBuffer::new(1);
-        (0..500).for_each(|i| buffer.push(&Draw::free([value(i)], i % 5)));
+        buffer.make_room(500);
+        (0..500).for_each(|i| buffer.put(i as usize, &Draw::free([value(i)], i % 5)));
         buffer
     }
 

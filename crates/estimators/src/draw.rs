@@ -59,21 +59,18 @@ impl DrawBuffer {
         self.values.resize_with(channels, Vec::new);
     }
 
-    /// Removes the draws.
-    pub fn clear(&mut self) {
-        self.values.iter_mut().for_each(Vec::clear);
-        self.lookups.clear();
-        self.defects.clear();
-    }
-
-    /// Adds a draw.
+    /// Overwrites a draw.
     #[inline(always)]
-    pub fn push<V: AsRef<[f64]>>(&mut self, draw: &Draw<V>) {
-        for (channel, &value) in self.values.iter_mut().zip(draw.value.as_ref()) {
-            channel.push(value);
+    pub fn put<V: AsRef<[f64]>>(&mut self, number: usize, draw: &Draw<V>) {
+        let values = draw.value.as_ref();
+        for (channel, &value) in values.iter().enumerate() {
+            // Pictures need fewer channels.
+            if let Some(row) = self.values.get_mut(channel) {
+                row[number] = value;
+            }
         }
-        self.lookups.push(draw.lookups);
-        self.defects.push(draw.defect);
+        self.lookups[number] = draw.lookups;
+        self.defects[number] = draw.defect;
     }
 
     /// Resizes to `count` draws of one channel; returns values, lookups and defects for overwriting. `None` if

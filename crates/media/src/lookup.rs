@@ -318,11 +318,7 @@ impl<'a> Batches<'a> {
 
     /// `σ_t` at the points of two packs.
     #[inline(always)]
-    pub fn pair<S: Hardware>(
-        &self,
-        simd: S,
-        points: &[[f64; PAIR_WIDTH]; 3],
-    ) -> Pair<S::Pack> {
+    pub fn pair<S: Hardware>(&self, simd: S, points: &[[f64; PAIR_WIDTH]; 3]) -> Pair<S::Pack> {
         match self.single_value {
             Some(value) => Pair::splat(simd, value),
             None => Pair::from_row(simd, &self.batch.pair(points)),

@@ -328,10 +328,19 @@ impl Plan {
         self.run(Ground::new(setup, medium, &rays, &[]), run)
     }
 
-    /// Makes one draw: compiled once for all pages.
-    #[inline(never)]
-    fn draw(&self, setup: &Setup<SingleScattering>, medium: &Lookups, random: &mut Stream) -> Draw {
-        self.run_on(setup, medium, One { setup, medium, random })
+    /// Makes the draws of a request: compiled once for all pages.
+    fn fill(&self, kernel: Kernel, setup: &Setup<SingleScattering>, request: Request) {
+        let left = match kernel {
+            Kernel::Single => Some(request),
+            Kernel::Packets(level) => {
+                let medium = &setup.problem.lookups(level);
+                self.draw_packets(level, setup, medium, request)
+            }
+        };
+        if let Some(request) = left {
+            let medium = &setup.problem.lookups(Level::new());
+            self.run_on(setup, medium, InTurn { setup, request });
+        }
     }
 
     /// Makes the draws of a request in packets. Returns the request where the hardware is too narrow, where σ̂ has
@@ -382,6 +391,21 @@ impl Run for One<'_, '_> {
     #[inline(always)]
     fn run(self, walk: &impl Walk) -> Draw {
         walks::draw(walk, &self.setup.fields.sampling, self.medium, self.random)
+    }
+}
+
+/// A use that makes the draws of a request one walk after the other.
+struct InTurn<'a, 'r> {
+    setup: &'a Setup<SingleScattering>,
+    request: Request<'r>,
+}
+
+impl Run for InTurn<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self, walk: &impl Walk) {
+        walks::in_turn(walk, self.setup, self.request);
     }
 }
 
@@ -446,13 +470,6 @@ impl<P: Planned> Estimator<SingleScattering> for ByPlan<P> {
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<SingleScattering>, request: Request) {
-        walks::by(
-            kernel,
-            setup,
-            request,
-            |level, medium, request| self.0.draw_packets(level, setup, medium, request),
-            #[inline(always)]
-            |medium, rng| self.0.draw(setup, medium, rng),
-        );
+        self.0.fill(kernel, setup, request);
     }
 }

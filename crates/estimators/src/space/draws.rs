@@ -34,6 +34,33 @@ pub fn draw<V: Channels, T: Tally, const SPLITS: bool>(
     )
 }
 
+/// Makes the draws of a request one after the other, as [`draw`] does.
+pub fn in_turn<V: Channels + AsRef<[f64]>, T: Tally, const SPLITS: bool>(
+    tally: &T,
+    particle: &Particle,
+    world: (&Scene, &Majorants),
+    request: Request,
+) {
+    let walk = InSpace::new(tally, *particle, world, &[]);
+    let Request { streams, count, buffer } = request;
+    compiled_once(
+        #[inline(always)]
+        || {
+            let mut waiting = Vec::new();
+            buffer.make_room(count);
+            for number in 0..count {
+                let (random, look_up) = (streams.of_next_draw(), plain::in_doubles::<f64>(&walk));
+                let draw: Draw<V> = if SPLITS {
+                    splitting::follow(&walk, particle.splitting, look_up, random, &mut waiting)
+                } else {
+                    plain::in_space(&walk, look_up, random)
+                };
+                buffer.put(number, &draw);
+            }
+        },
+    );
+}
+
 /// Makes one draw in any lane of one number, given the value of a field of the walk at a place.
 #[inline(always)]
 pub fn follow<L: ScalarLane, V: Channels, T: Tally, const SPLITS: bool>(
@@ -43,7 +70,7 @@ pub fn follow<L: ScalarLane, V: Channels, T: Tally, const SPLITS: bool>(
     random: &mut impl Random<L>,
 ) -> Draw<V> {
     if SPLITS {
-        splitting::follow(walk, splitting, look_up, random)
+        splitting::follow(walk, splitting, look_up, random, &mut Vec::new())
     } else {
         plain::in_space(walk, look_up, random)
     }

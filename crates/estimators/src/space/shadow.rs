@@ -28,6 +28,8 @@ pub struct ShadowRays<'a> {
     pub tracking: Tracking,
     /// `1/σ̂`; 1 where nothing is tracked.
     mean_free_path: f64,
+    /// σ_t, if the volume has one value: a volume takes longer to say so than a pack to use it.
+    extinction: Option<f64>,
 }
 
 /// Light as seen from a point, or from eight.
@@ -94,7 +96,8 @@ impl<'a> ShadowRays<'a> {
             Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } => sampling,
             Tracking::Exact => 1.0,
         };
-        Self { volume, bounds, tracking, mean_free_path: 1.0 / sampling }
+        let extinction = volume.facts().single_value;
+        Self { volume, bounds, tracking, mean_free_path: 1.0 / sampling, extinction }
     }
 
     /// The exact transmittance of intervals of rays within the volume, for the lanes in `which`; 1 for the others.
@@ -111,7 +114,7 @@ impl<'a> ShadowRays<'a> {
         if !which.any() {
             return one;
         }
-        if let Some(value) = self.volume.facts().single_value {
+        if let Some(value) = self.extinction {
             return L::select(which, (-((to - from) * value)).exp(), one);
         }
         let ([a, b, c], [x, y, z]) = (origin, direction);

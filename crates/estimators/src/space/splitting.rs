@@ -6,7 +6,7 @@
 use super::events::WalkEvents;
 use super::particle::Splitting;
 use super::tally::Tally;
-use super::walk::InSpace;
+use super::walk::{InSpace, Path};
 use crate::Draw;
 use crate::walks::Walk;
 use crate::walks::plain::{look_up_in_space, scored};
@@ -14,17 +14,20 @@ use numeric::ScalarLane;
 use numeric::rng::Random;
 use theory::problems::Channels;
 
-/// Makes one draw: follows a walk and the particles that split off to their ends.
+/// Scattered particles that are followed later, and the number of splits behind each.
+pub type Waiting<L> = Vec<(Path<L>, u32)>;
+
+/// Makes one draw: follows a walk and the particles that split off to their ends. `waiting` is empty before and after
+/// it; its memory serves many draws.
 #[inline(always)]
 pub fn follow<L: ScalarLane, V: Channels, T: Tally, S: WalkEvents>(
     walk: &InSpace<T, S>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,
     random: &mut impl Random<L>,
+    waiting: &mut Waiting<L>,
 ) -> Draw<V> {
     let mut state = walk.begin(L::of(1.0), true, random);
-    // Scattered particles that are followed later, and the splits behind each.
-    let mut waiting = Vec::new();
     let (mut depth, mut total, mut lookups) = (0, 0, 0);
     loop {
         let [flight, _] = walk.numbers(&mut state, random);

@@ -82,17 +82,17 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
-        walks::by(
-            kernel,
-            setup,
-            request,
-            |level, _, request| {
-                let Ok(tally) = P::tally(setup, &self.0) else { return Some(request) };
-                let world = (setup.problem.scene(), &*setup.fields);
-                draws::packets(level, &tally, &self.0, world, request)
-            },
-            #[inline(always)]
-            |_, random| draw::<P, SPLITS>(self.0, &self.0, setup, random),
-        );
+        let tally = match P::tally(setup, &self.0) {
+            Ok(tally) => tally,
+            Err(draw) => return walks::one_by_one(setup, request, |_, _| draw),
+        };
+        let world = (setup.problem.scene(), &*setup.fields);
+        let left = match kernel {
+            Kernel::Single => Some(request),
+            Kernel::Packets(level) => draws::packets(level, &tally, &self.0, world, request),
+        };
+        if let Some(request) = left {
+            draws::in_turn::<P::Value, _, SPLITS>(&tally, &self.0, world, request);
+        }
     }
 }

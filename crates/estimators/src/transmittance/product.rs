@@ -167,6 +167,7 @@ impl<R: Collision> Walk for Survival<'_, R> {
     type State<L: Lane> = Survivor<L>;
 
     const IS_FIXED: bool = true;
+    const IS_SURVIVAL: bool = true;
     const HAS_DEFECT: bool = true;
     const INLINES_EQ21: bool = true;
 

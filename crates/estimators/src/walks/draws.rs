@@ -62,16 +62,17 @@ where
     compiled_once(
         #[inline(always)]
         || {
-            buffer.clear();
-            for _ in 0..count {
+            buffer.make_room(count);
+            for number in 0..count {
                 let (sampling, random) = (setup.residual().sampling, streams.of_next_draw());
-                buffer.push(&plain::through::<f64, _, P::Value>(
+                let draw = plain::through::<f64, _, P::Value>(
                     walk,
                     sampling,
                     #[inline(always)]
                     |channel, t| medium.channel(channel).extinction(t),
                     random,
-                ));
+                );
+                buffer.put(number, &draw);
             }
         },
     );
@@ -107,10 +108,9 @@ pub fn one_by_one<P: Estimated>(
     compiled_once(
         #[inline(always)]
         || {
-            buffer.clear();
-            for _ in 0..count {
-                let stream = streams.of_next_draw();
-                buffer.push(&draw(&medium, stream));
+            buffer.make_room(count);
+            for number in 0..count {
+                buffer.put(number, &draw(&medium, streams.of_next_draw()));
             }
         },
     );

@@ -83,6 +83,10 @@ pub trait Walk: Copy {
     /// True if [`Walk::defect`] may exceed 0.
     const HAS_DEFECT: bool = false;
 
+    /// True if [`Walk::value`] depends only on whether the walk has left the medium, and [`Walk::defect`] is nearly
+    /// always 0: the steps of a [`window`] store neither.
+    const IS_SURVIVAL: bool = false;
+
     /// True if the walk keeps its own position and needs no route.
     const IS_NOWHERE: bool = false;
 

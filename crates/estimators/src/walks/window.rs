@@ -72,6 +72,8 @@ struct Pack<L: Lane, W: Walk, C> {
     inside: L::Mask,
     /// Number of lookups of walks that pause.
     lookups: L,
+    /// False before the first defect of a walk that [`Walk::IS_SURVIVAL`].
+    stores_defects: bool,
 }
 
 impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
@@ -81,7 +83,17 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
         let all = zero.at_most(zero);
         let mut none = Numbers { depth: zero, decision: zero };
         let state = walk.begin(simd.splat(1.0), all, &mut none);
-        Self { route: Route::new(course), state, inside: all, lookups: zero }
+        let route = Route::new(course);
+        Self { route, state, inside: all, lookups: zero, stores_defects: !W::IS_SURVIVAL }
+    }
+
+    /// The values of a walk that has left, and of another, if it [`Walk::IS_SURVIVAL`].
+    #[inline(always)]
+    fn survival(&self, walk: &W) -> [f64; 2] {
+        let (all, mut rows) = (self.inside, [[0.0; WIDTH]; 2]);
+        walk.value(&self.state, all, 0).store(&mut rows[0]);
+        walk.value(&self.state, !all, 0).store(&mut rows[1]);
+        [rows[0][0], rows[1][0]]
     }
 
     /// Flies; returns the distances at which σ_t is looked up. Distances of lanes without a collision may lie
@@ -102,9 +114,16 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
         row: &mut Row,
     ) -> [u64; 2] {
         let inside = self.inside;
-        walk.value(&self.state, !inside, 0).store(&mut row.0[0]);
+        if !W::IS_SURVIVAL {
+            walk.value(&self.state, !inside, 0).store(&mut row.0[0]);
+        }
         if W::HAS_DEFECT {
-            walk.defect(&self.state, t.each(0.0)).store(&mut row.0[1]);
+            let (zero, defect) = (t.each(0.0), walk.defect(&self.state, t.each(0.0)));
+            // NaN is a defect.
+            self.stores_defects |= !W::IS_SURVIVAL || (!defect.at_most(zero)).any();
+            if self.stores_defects {
+                defect.store(&mut row.0[1]);
+            }
         }
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
         let number = numbers.decision;
@@ -223,9 +242,10 @@ impl<S: Hardware> Window<S> {
         next: Streams<S>,
         streams: &mut Streams<S>,
         (draws, lanes): (&mut Draws<'_>, &mut [Stream]),
-        pack: usize,
+        (pack, stores_defects): (usize, bool),
     ) {
-        let over = draws.collect::<W>(pack, &self.rows, &by_lanes(simd, &self.ended, &self.inside));
+        let steps = by_lanes(simd, &self.ended, &self.inside);
+        let over = draws.collect::<W>((pack, stores_defects), &self.rows, &steps);
         if over != [0; WIDTH] {
             let words = if W::DECIDES { 2 } else { 1 };
             leave(
@@ -306,6 +326,8 @@ struct Draws<'a> {
     values: &'a mut [f64],
     lookups: &'a mut [u32],
     defects: &'a mut [f64],
+    /// The values of a walk that has left, and of another, if it [`Walk::IS_SURVIVAL`].
+    survival: [f64; 2],
 }
 
 impl Draws<'_> {
@@ -315,11 +337,11 @@ impl Draws<'_> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
     fn collect<W: Walk>(
         &mut self,
-        pack: usize,
+        (pack, stores_defects): (usize, bool),
         rows: &[Row; STEPS],
         steps: &[StepBits; WIDTH],
     ) -> [usize; WIDTH] {
-        let mut over = [0; WIDTH];
+        let (mut over, survival) = ([0; WIDTH], self.survival);
         let Account { quotas, open, first } = &mut self.accounts[pack];
         // All slices get one length, which the compiler can use in the loop.
         let count = self.values.len().min(self.lookups.len()).min(self.defects.len());
@@ -333,13 +355,16 @@ impl Draws<'_> {
                 let step = ended.trailing_zeros() & (STEPS as u32 - 1);
                 ended &= ended - 1;
                 let [value, other] = &rows[step as usize].0;
-                values[draw] = value[lane];
-                defects[draw] = if W::HAS_DEFECT { other[lane] } else { 0.0 };
+                let inside = steps.inside >> step & 1;
+                // No branch: what ends a walk cannot be foreseen.
+                values[draw] = if W::IS_SURVIVAL { survival[inside as usize] } else { value[lane] };
+                let has_defect = W::HAS_DEFECT && stores_defects;
+                defects[draw] = if has_defect { other[lane] } else { 0.0 };
                 let now = first.wrapping_add(step);
                 lookups[draw] = if W::PAUSES {
                     other[lane] as u32
                 } else {
-                    now.wrapping_sub(began) + (steps.inside >> step & 1) as u32
+                    now.wrapping_sub(began) + inside as u32
                 };
                 began = now.wrapping_add(1);
                 draw += LANES;
@@ -379,11 +404,12 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
         account.quotas[lane % WIDTH].draw = draw;
         account.open += usize::from(draw < count);
     }
-    let mut draws = Draws { accounts, values, lookups, defects };
     let [first, second] = streams.packs();
     streams.turn = (streams.turn + count) % LANES;
     let lanes = &mut streams.lanes[..];
     let (mut pack, mut other) = (Pack::new(simd, &walk, course), Pack::new(simd, &walk, course));
+    let survival = if W::IS_SURVIVAL { pack.survival(&walk) } else { [0.0; 2] };
+    let mut draws = Draws { accounts, values, lookups, defects, survival };
     let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
     let mut window = Window::open(simd, &mut streams, W::DECIDES);
     let mut other_window = Window::open(simd, &mut other_streams, W::DECIDES);
@@ -400,7 +426,9 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
                 other.collide(&walk, (t.1, found.1), &other_numbers, &mut other_window.rows[step]);
             other_window.note(step, bits, W::DECIDES);
         }
-        window.turn::<W>(simd, next, &mut streams, (&mut draws, &mut *lanes), 0);
-        other_window.turn::<W>(simd, other_next, &mut other_streams, (&mut draws, &mut *lanes), 1);
+        let (first, second) = ((0, pack.stores_defects), (1, other.stores_defects));
+        window.turn::<W>(simd, next, &mut streams, (&mut draws, &mut *lanes), first);
+        let to = (&mut draws, &mut *lanes);
+        other_window.turn::<W>(simd, other_next, &mut other_streams, to, second);
     }
 }
