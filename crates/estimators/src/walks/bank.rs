@@ -222,12 +222,20 @@ impl Rows {
     /// Writes the draws of some lanes, as bits; returns the lanes that have made their last one.
     #[inline(never)]
     fn write(&self, [ended, inside]: [u64; 2], slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+        let DrawBuffer { values, lookups, defects, .. } = buffer;
+        if let ([values], [row]) = (&mut values[..], &self.values[..]) {
+            return slots.fill(ended, |slot| {
+                values[slot.draw] = row[slot.lane];
+                defects[slot.draw] = self.defects[slot.lane];
+                lookups[slot.draw] = self.lookups(inside, slot);
+            });
+        }
         slots.fill(ended, |slot| {
-            for (channel, row) in buffer.values.iter_mut().zip(&self.values) {
+            for (channel, row) in values.iter_mut().zip(&self.values) {
                 channel[slot.draw] = row[slot.lane];
             }
-            buffer.defects[slot.draw] = self.defects[slot.lane];
-            buffer.lookups[slot.draw] = self.lookups(inside, slot);
+            defects[slot.draw] = self.defects[slot.lane];
+            lookups[slot.draw] = self.lookups(inside, slot);
         })
     }
 
