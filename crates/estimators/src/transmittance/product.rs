@@ -123,8 +123,9 @@ impl<R: Collision> Walk for Product<'_, R> {
         let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
         let goes_on = if R::DECIDES { inside & !self.rule.kills(&met, number) } else { inside };
         let Particle { weight, invariant } = particle;
-        invariant.take_where(goes_on, *weight, self.rule.due(ratio, outcome.survival));
-        weight.set_where(goes_on, *weight * outcome.weight);
+        // Walks that end as well: they are replaced.
+        invariant.take(*weight, self.rule.due(ratio, outcome.survival));
+        *weight = *weight * outcome.weight;
         goes_on
     }
 
@@ -190,7 +191,7 @@ impl<R: Collision> Walk for Survival<'_, R> {
         let goes_on = inside & !self.0.rule.kills(&met, number);
         let (zero, ratio) = (t.each(0.0), met.ratio());
         // NaN stays NaN.
-        let is_missing = goes_on & !zero.at_most(ratio);
+        let is_missing = !zero.at_most(ratio);
         survivor.missing.add_where(is_missing, ratio);
         goes_on
     }

@@ -60,7 +60,7 @@ pub trait Walk: Copy {
     const DECIDES: bool = true;
 
     /// True if a step takes no further random numbers, a draw has one channel, and its value and defect are known
-    /// before [`Walk::collide`]: the walk runs in a [`window`].
+    /// before [`Walk::collide`], which may overwrite the state of walks that end: the walk runs in a [`window`].
     const IS_FIXED: bool = false;
 
     /// True if fields are looked up at distances along the ray, see [`Walk::distance`].

@@ -119,7 +119,11 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
             in_space,
             number,
         };
+        let before = state;
         let goes_on = walk.collide(&mut state, &mut route, &met, random);
+        if W::IS_FIXED && !goes_on {
+            state = before;
+        }
         if W::SCORES == Scores::Often && walk.scores(&state, !goes_on) {
             let (found, _) = score(walk, &state, true, zero);
             for (sum, found) in sums.iter_mut().zip(found) {
