@@ -123,7 +123,7 @@ impl<R: Collision> Walk for Product<'_, R> {
         let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
         let goes_on = if R::DECIDES { inside & !self.rule.kills(&met, number) } else { inside };
         let Particle { weight, invariant } = particle;
-        // Walks that end as well: they are replaced.
+        // In walks that end, too: the restart overwrites them.
         invariant.take(*weight, self.rule.due(ratio, outcome.survival));
         *weight = *weight * outcome.weight;
         goes_on

@@ -356,7 +356,7 @@ impl Draws<'_> {
                 ended &= ended - 1;
                 let [value, other] = &rows[step as usize].0;
                 let inside = steps.inside >> step & 1;
-                // No branch: what ends a walk cannot be foreseen.
+                // No branch: it would be mispredicted, for ends are random.
                 values[draw] = if W::IS_SURVIVAL { survival[inside as usize] } else { value[lane] };
                 let has_defect = W::HAS_DEFECT && stores_defects;
                 defects[draw] = if has_defect { other[lane] } else { 0.0 };
