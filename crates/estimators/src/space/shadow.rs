@@ -28,7 +28,7 @@ pub struct ShadowRays<'a> {
     pub tracking: Tracking,
     /// `1/σ̂`; 1 where nothing is tracked.
     mean_free_path: f64,
-    /// σ_t, if the volume has one value; to look for one took longer than all else of an exact shadow ray.
+    /// σ_t, if the volume has one value. Found once, for it is computed from all facts of the volume.
     extinction: Option<f64>,
 }
 
