@@ -22,8 +22,10 @@ const MANY: usize = 64;
 /// Returns the number of channels of an experiment's draws.
 fn channels(experiment: &dyn Experiment, address: Address) -> usize {
     let mut buffer = DrawBuffer::new(MANY);
+    // What a draw does not overwrite is not of its channels.
+    buffer.values.fill(vec![f64::NAN]);
     experiment.fill_by(Kernel::Single, &mut address.streams(), 1, &mut buffer);
-    buffer.values.iter().filter(|channel| !channel.is_empty()).count()
+    buffer.values.iter().filter(|channel| !channel[0].is_nan()).count()
 }
 
 /// Returns all draws of an experiment, as bits, and its final streams.

@@ -211,7 +211,11 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W,
                 in_space,
                 number,
             };
+            let before = state;
             let goes_on = walk.collide(&mut state, &mut route, &met, random);
+            if W::IS_FIXED && !goes_on {
+                state = before;
+            }
             if inside {
                 notes.weight *= (extinction * mean_free_path).double().one_minus();
                 notes.from = notes.t;
