@@ -7,7 +7,6 @@ use crate::common::none;
 const NONE: [&str; 15] = [
     "cannot encode {name} as csv",
     "cannot encode as json: {0}",
-    "cannot encode as JUnit XML: {0}",
     "cannot encode truth.json: {0}",
     "cannot draw {figure}: {message}",
     "a record of form {found}",
