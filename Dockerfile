@@ -5,10 +5,10 @@ FROM rust:1.89.0-slim-bookworm AS build
 WORKDIR /trueflight
 COPY . .
 # With the C library inside, so that the image needs no other file.
-RUN cargo rustc --release --locked --bin trueflight -- -C target-feature=+crt-static -C strip=symbols
+RUN cargo rustc --profile dist --locked --bin trueflight -- -C target-feature=+crt-static
 
 FROM scratch
-COPY --from=build /trueflight/target/release/trueflight /bin/trueflight
+COPY --from=build /trueflight/target/dist/trueflight /bin/trueflight
 WORKDIR /work
 USER 65534:65534
 ENTRYPOINT ["/bin/trueflight"]

@@ -3,12 +3,12 @@
 #
 #   benches/build.sh OLD [NEW] [STAGE…]      NEW is HEAD; OLD and NEW are revisions of git
 #
-# Stages, in this order: build gate first suite test edit. Without any: build gate first suite.
+# Stages, in this order: gate build first suite test edit. Without any: gate build first suite. Only committed changes are timed.
 #
-#   build   cargo build --release, cold: processor seconds, wall seconds, and seconds of each crate of the workspace
-#   gate    the same of the package trueflight-gate alone
+#   gate    cargo build --release of the package trueflight-gate alone, cold: processor seconds, wall seconds
+#   build   the same of the command, and seconds of each crate of the workspace
 #   first   fresh clone to the end of the main job: wall seconds (crates.io is reached beforehand)
-#   suite   the main job alone, one thread, five times in turn: least processor seconds
+#   suite   the main job alone, one thread, three times in turn: least processor seconds
 #   test    cargo test --release, cold: processor seconds, building and running
 #   edit    a changed heading of a report, and a changed line of an estimator: processor seconds to the verdict of a test
 #
@@ -98,7 +98,7 @@ fi
 [[ $stages != *' first '* ]] || cold 'clone to the end of the main job' cargo run --release --locked -- run --out "$place/results"
 if [[ $stages == *' suite '* ]]; then
     for side in old new; do timed "$side" cargo build --release --locked; done
-    for turn in 1 2 3 4 5; do
+    for turn in 1 2 3; do
         for side in old new; do
             timed "$side" target/release/trueflight run --threads 1 --seed 1 --out "$place/results"
             echo "$processor" >>"$place/$side.suite"

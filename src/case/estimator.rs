@@ -192,12 +192,15 @@ struct Offer {
 /// a mistake.
 type Keep<'a> = dyn FnMut(usize, &Settings) -> Option<Features> + 'a;
 
+/// Entries of estimators of a problem.
+type Entries<P> = Vec<Box<dyn Entry<P>>>;
+
 /// Calls `read` with the estimators of problem `P`, and returns the entries that it kept. Here alone the reader depends on
 /// the problem's type: all else is compiled once for all problems.
 fn reading<P: Estimated, T>(
     settings: &Settings,
     read: &dyn Fn(&Offer, &mut Keep) -> Option<T>,
-) -> Option<(T, Vec<Box<dyn Entry<P>>>)> {
+) -> Option<(T, Entries<P>)> {
     let built_in = P::CATALOGUE.pages;
     let mut offer = Offer::new(P::MODULE, P::OPTIONS, built_in);
     let mut own: Vec<EstimatorReader<P>> = Vec::new();

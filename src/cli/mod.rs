@@ -158,7 +158,18 @@ pub fn can_draw() -> anyhow::Result<()> {
 }
 
 fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Result<u8> {
-    can_draw()?;
+    let draws = !matches!(
+        cli.command,
+        Command::Report(_)
+            | Command::List(_)
+            | Command::Explain(_)
+            | Command::Inspect(_)
+            | Command::Judge(_)
+            | Command::Completions(_)
+    );
+    if draws {
+        can_draw()?;
+    }
     // Only `run` can be shared by ranks.
     let link = ranks::join(matches!(cli.command, Command::Run(_)), join)?;
     let console = &cli.console;

@@ -12,7 +12,7 @@ use terminal_size::{Width, terminal_size_of};
 const TICK: Duration = Duration::from_millis(100);
 /// Age in seconds at which a speed has a tenth of its weight.
 const MEMORY: f64 = 15.0;
-/// Columns of a terminal that does not tell them.
+/// Columns that are assumed where the terminal does not report its width.
 const COLUMNS: usize = 80;
 /// Returns to the begin of the line and clears it.
 const CLEAR: &str = "\r\x1b[2K";
@@ -26,7 +26,7 @@ pub struct Bar {
 
 #[derive(Debug)]
 struct State {
-    /// What is done, and to what.
+    /// Verb and plural noun of the bar, such as `drawing` and `draws`.
     words: [String; 2],
     begin: Instant,
     /// Seconds after which the work ends at the latest.
@@ -38,6 +38,7 @@ struct State {
     closing: Condvar,
 }
 
+/// Whether the bar is closed, and its speed so far.
 #[derive(Debug, Default)]
 struct Screen {
     is_closed: bool,
@@ -76,7 +77,7 @@ impl Bar {
         self.state.all.store(all, Ordering::Relaxed);
     }
 
-    /// Takes things away that need not be done.
+    /// Reduces the number of all things: these need not be done.
     pub fn dec_length(&self, things: u64) {
         self.state.all.fetch_sub(things, Ordering::Relaxed);
     }

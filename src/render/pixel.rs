@@ -202,15 +202,8 @@ impl<'a> Pixel<'a> {
             let count = left.min(DrawBuffer::LENGTH as u64);
             #[expect(clippy::cast_possible_truncation)] // at most a buffer's length
             experiment.fill_by(kernel, &mut streams, count as usize, &mut buffer);
-            let sums = pixel.sum.iter_mut().zip(&mut pixel.squares);
-            for (values, (sum, squares)) in buffer.values.iter().zip(sums) {
-                for x in values {
-                    let x = x * self.sky;
-                    *sum += x;
-                    *squares += x * x;
-                }
-            }
-            pixel.lookups += buffer.lookups.iter().map(|&n| u64::from(n)).sum::<u64>();
+            buffer.add_sums(self.sky, &mut pixel.sum, &mut pixel.squares);
+            pixel.lookups += buffer.all_lookups();
             left -= count;
         }
         pixel

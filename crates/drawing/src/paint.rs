@@ -6,7 +6,7 @@ use plotters::style::{Color, RGBAColor, RGBColor, ShapeStyle};
 use crate::font::Typeface;
 use crate::sheet::{Align, Image, Label, Shape, Sheet, Spot, strokes};
 
-/// Units of a pixel: a figure is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
+/// Units of the fine raster per unit of the sheet. Blocks of 2 × 2 are averaged, which smooths edges: a PNG has 1.5 pixels a unit.
 const UNITS: f64 = 3.0;
 /// Largest distance of a coordinate from the sheet's corner, in units.
 const MAX_COORDINATE: f64 = 1e6;

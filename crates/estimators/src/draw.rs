@@ -69,6 +69,10 @@ impl DrawBuffer {
                 row[number] = value;
             }
         }
+        // A value of an earlier request must not pass for one of this draw.
+        for row in self.values.iter_mut().skip(values.len()) {
+            row[number] = f64::NAN;
+        }
         self.lookups[number] = draw.lookups;
         self.defects[number] = draw.defect;
     }
@@ -79,6 +83,22 @@ impl DrawBuffer {
         self.make_room(count);
         let values = self.values.first_mut()?;
         Some((values, &mut self.lookups, &mut self.defects))
+    }
+
+    /// Adds the values of each channel, times a scale, to its sum, and their squares to its sum of squares.
+    pub fn add_sums(&self, scale: f64, sums: &mut [f64], squares: &mut [f64]) {
+        for (values, (sum, square)) in self.values.iter().zip(sums.iter_mut().zip(squares)) {
+            for x in values {
+                let x = x * scale;
+                *sum += x;
+                *square += x * x;
+            }
+        }
+    }
+
+    /// Returns the number of lookups of all draws.
+    pub fn all_lookups(&self) -> u64 {
+        self.lookups.iter().map(|&lookups| u64::from(lookups)).sum()
     }
 
     /// Repeats the draws until their number is `count`.

@@ -135,9 +135,13 @@ pub trait Estimator<P: Estimated>: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Makes the draws of a request: bit for bit equal for every kernel and level that fuses.
+    /// Makes the draws of a request: bit for bit equal for every kernel and level.
     ///
     /// Draw j comes from stream j mod 16. [`walks::fill`] makes them of a walk, [`walks::one_by_one`] of a function.
+    ///
+    /// # Panics
+    ///
+    /// On processors that lack what kernels are compiled for, see [`numeric::fused::missing`].
     fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request);
 }
 

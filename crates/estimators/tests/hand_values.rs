@@ -6,11 +6,11 @@ use media::{Medium, Piecewise};
 use numeric::Span;
 use numeric::geometry::{Point, exit};
 use numeric::pack::WIDTH;
-use numeric::rng::{LANES, PACKS};
+use numeric::rng::{Address, LANES, PACKS};
 use theory::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::channels;
-use trueflight_estimators::rod::walk::{By, InRod, Particle};
+use trueflight_estimators::rod::walk::{By, InRod, Particle, WalkEvents};
 use trueflight_estimators::slab::walk::turned;
 use trueflight_estimators::sphere::connect::cone;
 use trueflight_estimators::transmittance::scoring::{Score, Share};
@@ -120,4 +120,20 @@ fn a_particle_is_seen_at_its_end_and_by_its_order() {
     assert_eq!(values(&reflected, false)[6..], [0.2, 0.0, 0.0]);
     let often = Particle { order: 7.0, ..reflected };
     assert_eq!(values(&often, true)[1..6], [0.0; 5]);
+}
+
+#[test]
+fn what_roulette_takes_it_gives_back() {
+    let steps = By { rule: ParticleRule::NonTerminating, roulette: Some(0.4) };
+    let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
+    let mut kept =
+        |mut weight: f64| steps.survive::<f64>(true, &mut weight, &mut rng).then_some(weight);
+    assert_eq!(kept(0.4), Some(0.4));
+    assert_eq!(kept(0.0), None);
+    for weight in [0.1, -0.3] {
+        let draws = 100_000;
+        let mean = (0..draws).filter_map(|_| kept(weight)).sum::<f64>() / f64::from(draws);
+        // A standard deviation of 0.0006 at most.
+        assert!((mean - weight).abs() < 0.004, "{mean} for {weight}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Verdicts on draws that another program made.
 //!
-//! The session of [`gate::session`] judges draws in memory, in [`files`] of several formats, and stacks of [`images`].
-//! The harness takes the claims about a draw from a case.
+//! [`gate::session`] judges draws in memory. [`files`] reads draws in several formats, [`whole`] tests their whole distribution, and
+//! [`images`] judges stacks of images. The harness takes the claims about a draw from a case.
 
 pub mod files;
 pub mod images;

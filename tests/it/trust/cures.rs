@@ -4,7 +4,7 @@ use super::{files, read};
 use crate::common::none;
 
 /// Beginnings of messages without a cure: an encoder or the system failed, or the message ends in another error's.
-const NONE: [&str; 15] = [
+const NONE: [&str; 14] = [
     "cannot encode {name} as csv",
     "cannot encode as json: {0}",
     "cannot encode truth.json: {0}",

@@ -196,25 +196,3 @@ impl WalkEvents for By {
 pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
     walks::fill(&InRod { rod: &setup.problem, steps }, kernel, setup, request);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use numeric::rng::Address;
-
-    #[test]
-    fn what_roulette_takes_it_gives_back() {
-        let steps = By { rule: ParticleRule::NonTerminating, roulette: Some(0.4) };
-        let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
-        let mut kept =
-            |mut weight: f64| steps.survive::<f64>(true, &mut weight, &mut rng).then_some(weight);
-        assert_eq!(kept(0.4), Some(0.4));
-        assert_eq!(kept(0.0), None);
-        for weight in [0.1, -0.3] {
-            let draws = 100_000;
-            let mean = (0..draws).filter_map(|_| kept(weight)).sum::<f64>() / f64::from(draws);
-            // A standard deviation of 0.0006 at most.
-            assert!((mean - weight).abs() < 0.004, "{mean} for {weight}");
-        }
-    }
-}

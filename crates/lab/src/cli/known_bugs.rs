@@ -9,7 +9,7 @@ use trueflight::cli::Console;
 use trueflight::cli::listing::{Row, print_pages, print_rows};
 use trueflight::cli::output::Format;
 
-/// Part of the catalogue that the known bugs are.
+/// Name of the part of the catalogue that lists the known bugs.
 const PART: &str = "known-bugs";
 
 /// Arguments of `list`.

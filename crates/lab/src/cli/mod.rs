@@ -81,12 +81,12 @@ pub fn run_as<T: Into<OsString> + Clone>(
 
 fn carry_out(cli: &Cli) -> ExitCode {
     let console = &cli.console;
-    let done = can_draw().and_then(|()| match &cli.command {
-        Task::SelfTest(arguments) => run::self_test(arguments, console),
-        Task::Stress(arguments) => run::stress(arguments, console),
+    let done = match &cli.command {
+        Task::SelfTest(arguments) => can_draw().and_then(|()| run::self_test(arguments, console)),
+        Task::Stress(arguments) => can_draw().and_then(|()| run::stress(arguments, console)),
         Task::List(arguments) => known_bugs::list(arguments, console),
         Task::Explain(arguments) => known_bugs::explain(arguments, console),
-    });
+    };
     done.map_or_else(
         |error| {
             output::complain(&error);

@@ -37,13 +37,13 @@ pub trait Hardware: Simd {
     /// True if a pack fits into one register.
     const IS_ONE_REGISTER: bool;
 
-    /// A value in every element.
+    /// Returns a pack with the value in every element.
     fn splat(self, value: f64) -> Self::Pack;
-    /// The elements of a row.
+    /// Returns the elements of a row as a pack.
     fn load(self, row: &[f64; WIDTH]) -> Self::Pack;
-    /// Elements that are true where a bit is 1; the lowest bit is the first element.
+    /// Returns the mask of eight bits; the lowest bit is the first element.
     fn mask(self, bits: u64) -> Self::Mask;
-    /// The words of a row.
+    /// Returns the words of a row.
     fn words(self, row: &[u64; WIDTH]) -> Self::Words;
 }
 
@@ -52,7 +52,7 @@ pub trait PackedWords: xoshiro::Words<Numbers: Lane<Mask = Self::Mask>> {
     /// Results of a comparison of their numbers.
     type Mask: Mask;
 
-    /// `yes` where the mask says so, else `no`.
+    /// Returns `yes` in selected elements and `no` in the others.
     #[must_use]
     fn select(which: Self::Mask, yes: Self, no: Self) -> Self;
     /// Uniform numbers for the elements that a mask selects, and the state of the streams after them.
