@@ -34,7 +34,7 @@ fn ways(count: usize, order: &[usize; 4]) -> f64 {
     different * (factorial(degree(order)) / alike)
 }
 
-/// `E[X], …, E[X⁴]` of the mean X, from the values of [`ORDERS`].
+/// `E[X], …, E[X⁴]` of the mean X, from the values of products of every order.
 pub fn of_mean<T>(count: usize, value: impl Fn(usize) -> T) -> [T; 4]
 where
     T: Sum + Mul<f64, Output = T> + Div<f64, Output = T>,
