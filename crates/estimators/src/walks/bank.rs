@@ -223,12 +223,24 @@ impl Rows {
     #[inline(never)]
     fn write(&self, [ended, inside]: [u64; 2], slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let DrawBuffer { values, lookups, defects, .. } = buffer;
-        if let ([values], [row]) = (&mut values[..], &self.values[..]) {
-            return slots.fill(ended, |slot| {
-                values[slot.draw] = row[slot.lane];
-                defects[slot.draw] = self.defects[slot.lane];
-                lookups[slot.draw] = self.lookups(inside, slot);
-            });
+        // One value, and reflectance with transmittance, are what most walks have.
+        match (&mut values[..], &self.values[..]) {
+            ([values], [row]) => {
+                return slots.fill(ended, |slot| {
+                    values[slot.draw] = row[slot.lane];
+                    defects[slot.draw] = self.defects[slot.lane];
+                    lookups[slot.draw] = self.lookups(inside, slot);
+                });
+            }
+            ([values, others], [row, other]) => {
+                return slots.fill(ended, |slot| {
+                    values[slot.draw] = row[slot.lane];
+                    others[slot.draw] = other[slot.lane];
+                    defects[slot.draw] = self.defects[slot.lane];
+                    lookups[slot.draw] = self.lookups(inside, slot);
+                });
+            }
+            _ => {}
         }
         slots.fill(ended, |slot| {
             for (channel, row) in values.iter_mut().zip(&self.values) {

@@ -15,8 +15,8 @@
 //! `α_d` is α, but not below 1e-4. The list of suspect tiles is by e-BH: on average at most 5 % of it are false.
 //!
 //! ```
-//! use trueflight::judge::images::{Claim, Level, Size, Stack, Options, judge};
-//! use trueflight::stats::verdict::Verdict;
+//! use trueflight_judge::images::{Claim, Level, Size, Stack, Options, judge};
+//! use gate::stats::verdict::Verdict;
 //!
 //! // 64 passes of 32 × 32 pixels, each the mean of four fair coins.
 //! let size = Size { rows: 32, columns: 32, channels: 1 };
@@ -32,7 +32,7 @@
 //! assert_eq!(judge(&stack, &claim, &Options::default())?.verdict, Verdict::Pass);
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(Level::All(0.52)) };
 //! assert_eq!(judge(&stack, &claim, &Options::default())?.verdict, Verdict::Fail);
-//! # Ok::<(), trueflight::judge::images::ImageError>(())
+//! # Ok::<(), trueflight_judge::images::ImageError>(())
 //! ```
 
 pub mod against;

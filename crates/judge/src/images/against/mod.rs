@@ -48,9 +48,9 @@ impl Default for Terms {
 /// Judges a stack by a reference.
 ///
 /// ```
-/// use trueflight::judge::images::against::{Terms, compare};
-/// use trueflight::judge::images::{Size, Stack, Options};
-/// use trueflight::stats::verdict::Verdict;
+/// use trueflight_judge::images::against::{Terms, compare};
+/// use trueflight_judge::images::{Size, Stack, Options};
+/// use gate::stats::verdict::Verdict;
 ///
 /// // 16 passes of 16 × 16 pixels, each the mean of four fair coins, times a factor.
 /// let size = Size { rows: 16, columns: 16, channels: 1 };
@@ -66,7 +66,7 @@ impl Default for Terms {
 /// let (reference, terms, wanted) = (stack(1, 1.0)?, Terms::default(), Options::default());
 /// assert_ne!(compare(&stack(2, 1.0)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
 /// assert_eq!(compare(&stack(2, 1.2)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
-/// # Ok::<(), trueflight::judge::images::ImageError>(())
+/// # Ok::<(), trueflight_judge::images::ImageError>(())
 /// ```
 ///
 /// # Errors
