@@ -13,7 +13,7 @@
 #   edit    a changed heading of a report, and a changed line of an estimator: processor seconds to the verdict of a test
 #
 # A line a figure: name, old, new, new over old. Processor seconds are user and system time of all processes; other work beside it
-# makes them some per cent larger. Wall seconds need a quiet machine. Takes 15 minutes on two cores without `test`.
+# makes them some per cent larger. Wall seconds need a quiet machine.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [[ $# -ge 1 ]] || { sed -n 2,17p "$0"; exit 2; }
@@ -77,7 +77,7 @@ cold() {
 
 # Processor seconds of each crate of the workspace, and of all others.
 crates() {
-    awk -v files=2 '
+    awk '
         { seconds[FILENAME, name = $3 ~ /^trueflight/ ? $3 : "all other crates"] += $1 + $2; names[name] }
         END { for (name in names) printf "%-44s %9.1f %9.1f\n", "  " name, seconds[ARGV[1], name], seconds[ARGV[2], name] }
     ' "$place/old.crates" "$place/new.crates" | sort
