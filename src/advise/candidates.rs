@@ -81,7 +81,7 @@ pub fn listed(base: &Case, rays: &[Body]) -> Result<Vec<String>, CaseError> {
             if places.contains(&None) {
                 return Err(CaseError::Faulty { source_text, faults });
             }
-            let wrong: Vec<usize> = places.into_iter().flatten().collect();
+            let wrong: BTreeSet<usize> = places.into_iter().flatten().collect();
             let kept = texts.into_iter().enumerate().filter(|(at, _)| !wrong.contains(at));
             Ok(kept.map(|(_, text)| text).collect())
         }

@@ -7,7 +7,6 @@ use super::score::Score;
 use super::study::{Best, Study};
 use crate::case::sweep::{Variation, What};
 use numeric::digits::number;
-use numeric::order;
 use theory::prediction::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
 
 /// Difference of two times that is a tie, with exact costs: settings are searched to this accuracy.
@@ -207,7 +206,7 @@ pub fn correct(rows: &mut [Row], study: &mut Study, prices: &mut Prices) {
 
 /// Sorts rows by group and goal, and marks ties.
 pub fn rank(rows: &mut [Row]) {
-    order::sort_by(rows, |a, b| a.group.cmp(&b.group).then(a.goal.total_cmp(&b.goal)));
+    rows.sort_by(|a, b| a.group.cmp(&b.group).then(a.goal.total_cmp(&b.goal)));
     for group in rows.chunk_by_mut(|a, b| a.group == b.group) {
         let mut first = 0;
         for i in 0..group.len() {

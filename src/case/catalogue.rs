@@ -11,7 +11,6 @@ use crate::case::{Case, suite};
 use estimators::{self, Estimated};
 use media;
 use media::catalogue::{OwnPage, OwnPages, PageList, suggestion};
-use numeric::order;
 use theory::problems::{MultipleScattering, Named};
 
 /// Built-in pages together with those that a program adds.
@@ -183,7 +182,7 @@ fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
             }
         }
     }
-    order::sort(&mut found);
+    found.sort();
     if found.is_empty() {
         return Err(CaseError::Empty { path: path.display().to_string() });
     }

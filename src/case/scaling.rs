@@ -13,7 +13,6 @@ use estimators::recipes::{controls, sampling};
 use media::catalogue::{Entry, Fault, Node, OwnPages, Value};
 use media::{CATALOGUE, Medium, reader};
 use numeric::digits::number;
-use numeric::order;
 
 /// Keys of fields.
 const FIELDS: [&str; 2] = ["medium", "volume"];
@@ -241,7 +240,7 @@ impl Scaling<'_> {
             }
             Value::Table(entries) => {
                 let mut sorted: Vec<&mut Entry> = entries.iter_mut().collect();
-                order::sort_by(&mut sorted, |a, b| a.key.cmp(&b.key));
+                sorted.sort_by(|a, b| a.key.cmp(&b.key));
                 let part = |entry: &mut Entry| {
                     let scope = self.within(scope, &entry.key);
                     format!("{} = {}", entry.key, self.walk(&mut entry.node, scope, visit))

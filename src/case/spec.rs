@@ -20,7 +20,6 @@ use crate::case::channels::read_single_channels;
 use crate::case::shorthand::spell_out;
 use media::catalogue::{Entry, Fault, Node, OwnPages, Settings, Value};
 use numeric::digits::counted;
-use numeric::order;
 
 /// Parsed case or picture.
 #[derive(Debug, Clone)]
@@ -338,7 +337,7 @@ impl Source {
 
     /// Returns the error that lists these mistakes, in the order of the file.
     fn faulty(&self, mut faults: Vec<Fault>) -> CaseError {
-        order::sort_by_key(&mut faults, |fault| fault.span.start);
+        faults.sort_by_key(|fault| fault.span.start);
         CaseError::Faulty { source_text: self.clone(), faults }
     }
 }
@@ -350,7 +349,7 @@ fn entries(table: &DeTable<'_>) -> Vec<Entry> {
         Entry { key: key.get_ref().to_string(), key_span: key.span(), node }
     };
     let mut entries: Vec<Entry> = table.iter().map(entry).collect();
-    order::sort_by_key(&mut entries, |entry| entry.key_span.start);
+    entries.sort_by_key(|entry| entry.key_span.start);
     entries
 }
 

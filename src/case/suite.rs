@@ -4,7 +4,6 @@
 use crate::case::forms::title;
 use crate::case::spec::{BuiltIn, Source, Spec, entry};
 use media::catalogue::{Entry, Node, Value, own_pages};
-use numeric::order;
 
 /// Lists built-in cases by their path below `cases/`, without `.toml`; `in "tests/"` means `tests/cases/`.
 macro_rules! cases {
@@ -225,7 +224,7 @@ impl Target<'_> {
             cuts.push((list.span.clone(), format!("[\n  {item},\n]")));
         }
         // From the end on: earlier spans keep their places.
-        order::sort_by_key(&mut cuts, |(span, _)| std::cmp::Reverse(span.start));
+        cuts.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
         let mut reduced = text.clone();
         for (span, new) in cuts {
             reduced.replace_range(span, &new);

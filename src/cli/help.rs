@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 
 use clap::builder::{PossibleValue, TypedValueParser, UnknownArgumentValueParser};
+use clap::error::{ContextKind, ContextValue};
 use clap::{Arg, Args, Command, CommandFactory};
 use clap_complete::Shell;
 
@@ -159,6 +160,19 @@ pub fn with_ends(command: Command, pages: &[HelpEnd]) -> Command {
             command.after_help(end).mut_args(|argument| argument.display_order(0))
         })
     })
+}
+
+/// Adds to the error about a command of the lab where that command is.
+pub fn with_place(mut error: clap::Error) -> clap::Error {
+    let name = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(name)) => name.as_str(),
+        _ => "",
+    };
+    if ["self-test", "stress"].contains(&name) {
+        let place = format!("`cargo run --release -p trueflight-lab -- {name}` in a checkout");
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![place.into()]));
+    }
+    error
 }
 
 /// Text argument that shells complete by names of the catalogue; any other text is valid, too.

@@ -120,7 +120,7 @@ pub fn run_as<T: Into<OsString> + Clone>(
 ) -> Result<ExitCode, String> {
     let matches = help::command().try_get_matches_from(arguments);
     let cli = matches.and_then(|matches| Cli::from_arg_matches(&matches));
-    let cli = cli.map_err(|error| error.to_string())?;
+    let cli = cli.map_err(|error| help::with_place(error).to_string())?;
     Ok(run_with(catalogue, None, &cli))
 }
 
@@ -131,8 +131,9 @@ pub fn main_among(catalogue: &Catalogue, join: Join) -> ExitCode {
 
 /// Parses the program's arguments; a mistake ends the process.
 fn parsed() -> Cli {
-    let cli = Cli::from_arg_matches(&help::command().get_matches());
-    cli.unwrap_or_else(|error| error.exit())
+    let matches = help::command().try_get_matches();
+    let cli = matches.and_then(|matches| Cli::from_arg_matches(&matches));
+    cli.unwrap_or_else(|error| help::with_place(error).exit())
 }
 
 fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {

@@ -26,7 +26,6 @@ use truth::Truth;
 
 use crate::case::{CaseError, Catalogue, Source};
 use media::files;
-use numeric::order;
 
 /// Renderer that scenes are written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -217,7 +216,7 @@ fn older(out: &Path, names: &[String]) -> Vec<PathBuf> {
     };
     let mut older: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     older.retain(is_old);
-    order::sort(&mut older);
+    older.sort();
     older
 }
 

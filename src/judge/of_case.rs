@@ -14,7 +14,6 @@ use crate::case::sweep::{SweepAxis, Variation, What};
 use ::theory::{CountDistribution, Distribution, Prediction};
 use gate::Check;
 use numeric::digits::{number, short};
-use numeric::order;
 
 /// Name of the problem with distances as draws.
 const FLIGHTS: &str = "free-flight";
@@ -337,7 +336,7 @@ impl Point<'_> {
     /// Returns the values of the sweep, the nearest first.
     fn by_distance(&self, value: f64) -> Vec<f64> {
         let mut values = self.axis.map_or(Vec::new(), |axis| axis.values.clone());
-        order::sort_by(&mut values, |a, b| (a - value).abs().total_cmp(&(b - value).abs()));
+        values.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
         values
     }
 

@@ -198,6 +198,15 @@ fn commands_that_do_not_finish_leave_no_folder() {
 }
 
 #[test]
+fn a_command_of_the_lab_is_told_where_it_is() {
+    for name in ["self-test", "stress"] {
+        let output = Place::new(&[]).run(name);
+        assert_eq!(code(&output), 2);
+        assert_says(&stderr(&output), &[&format!("-p trueflight-lab -- {name}")]);
+    }
+}
+
+#[test]
 fn results_are_written_where_they_are_wanted() {
     let place = Place::new(&[("case.toml", GOOD)]);
     let output = place.run("run case.toml --out here --draws 2000 --quiet");

@@ -8,7 +8,6 @@ use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
 use gate::stats::chi_square;
-use numeric::order;
 use theory::{self, Prediction};
 
 /// A draw counts as a value if it is this close to it, relative to the value's size.
@@ -27,7 +26,7 @@ struct Values {
 
 impl Values {
     fn of(mut atoms: Vec<(f64, f64)>, same: f64) -> Self {
-        order::sort_by(&mut atoms, |a, b| a.0.total_cmp(&b.0));
+        atoms.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (value, probability) = atoms.into_iter().unzip();
         Self { value, probability, same }
     }

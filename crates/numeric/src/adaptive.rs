@@ -68,10 +68,7 @@ pub fn halve<const N: usize>(
         }
     }
     let begins: Vec<f64> = kept.iter().map(|part| part.span.from).collect();
-    order::sorted(begins.len(), &|a, b| begins[a].total_cmp(&begins[b]))
-        .into_iter()
-        .map(|place| kept[place])
-        .collect()
+    order::ascending_places(&begins).into_iter().map(|place| kept[place]).collect()
 }
 
 #[cfg(test)]

@@ -13,7 +13,6 @@ use crate::judge::images::{Claim, Judgement, Level, Options, Stack, files, judge
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
 use numeric::digits::counted;
-use numeric::order;
 
 /// Options on images.
 #[derive(Debug, Args)]
@@ -212,7 +211,7 @@ fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     };
     let mut found: Vec<PathBuf> =
         entries.into_iter().map(|entry| entry.path()).filter(is_image).collect();
-    order::sort(&mut found);
+    found.sort();
     if found.is_empty() {
         bail!(
             "{}: a folder without images (.npy, .pfm, .exr); give one with a pass in each file",

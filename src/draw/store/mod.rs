@@ -18,7 +18,6 @@ use crate::draw::block::{Block, Draws, Progress};
 use crate::draw::run::{Listener, Step};
 use crate::draw::share::{BlockName, Drawing, Threads, Workers};
 use crate::plan::{Plan, Planned};
-use numeric::order;
 
 /// Largest number of finished experiments that are kept for later runs: some 20 MB.
 const MAX_FINISHED: usize = 2000;
@@ -179,7 +178,7 @@ impl Store {
         listen: &Listener,
     ) -> BTreeMap<BlockName, Block> {
         let kept = names.iter().filter_map(|&name| Some((name, self.find(name)?)));
-        let blocks = order::map(kept);
+        let blocks: BTreeMap<BlockName, Block> = kept.collect();
         let missing = names.iter().copied().filter(|name| !blocks.contains_key(name));
         let missing: Vec<BlockName> = missing.collect();
         listen(Step::Kept(blocks.values().map(|block| block.draws).sum()));
@@ -201,8 +200,8 @@ impl Store {
         else {
             return;
         };
-        let kept =
-            order::map(experiments.filter_map(|(number, one)| Some((self.key(number)?, one))));
+        let kept: BTreeMap<u64, &Progress> =
+            experiments.filter_map(|(number, one)| Some((self.key(number)?, one))).collect();
         let waits = |key| match key {
             Key::Block(one, block) => {
                 kept.get(&one).is_none_or(|one| !one.is_done && block >= one.blocks)

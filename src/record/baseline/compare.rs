@@ -21,14 +21,13 @@
 //! limit is the highest of the joined runs, since a later run selects by results of an earlier one. Entries that the
 //! later run has not drawn are kept.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
 use super::{Baseline, ChannelId, Entry, Evidence};
 use checks::normality::{Tails, variance_error};
 use gate::stats::normal;
-use numeric::order;
 
 /// Levels of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -187,7 +186,8 @@ impl<'e, T, I: Ord> Matches<'e, T, I> {
     pub fn of(stored: &'e [T], now: &'e [T], key: impl Fn(&T) -> (I, String)) -> Self {
         let (mut pairs, mut added, mut rewritten) = (Vec::new(), Vec::new(), Vec::new());
         let keyed = stored.iter().map(|entry| (key(entry), entry));
-        let mut before = order::map(keyed.map(|((id, text), entry)| (id, (text, entry))));
+        let mut before: BTreeMap<I, (String, &T)> =
+            keyed.map(|((id, text), entry)| (id, (text, entry))).collect();
         for entry in now {
             let (id, text) = key(entry);
             match before.remove(&id) {
@@ -244,7 +244,8 @@ pub fn compare(
         missing,
         rewritten,
     };
-    let before = order::map(stored.entries.iter().map(|entry| (&entry.id, entry)));
+    let before: BTreeMap<&ChannelId, &Entry> =
+        stored.entries.iter().map(|entry| (&entry.id, entry)).collect();
     let mut next = run.clone();
     if comparison.sequel != Sequel::OtherProgram {
         next.ln_e_limit = next.ln_e_limit.max(stored.ln_e_limit);
@@ -303,12 +304,12 @@ fn multiply(
 
 /// Returns the stored entries that the run has not drawn, unless the text of their case has changed.
 fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
-    let cases = run.entries.iter().map(|entry| entry.id.experiment.case.as_str());
-    let texts = order::map(cases.zip(run.entries.iter().map(|entry| &*entry.case)));
-    let drawn = order::map(run.entries.iter().map(|entry| (&entry.id, entry)));
+    let texts: BTreeMap<&str, &str> =
+        run.entries.iter().map(|entry| (entry.id.experiment.case.as_str(), &*entry.case)).collect();
+    let drawn: BTreeSet<&ChannelId> = run.entries.iter().map(|entry| &entry.id).collect();
     let kept = stored.entries.iter().filter(|entry| {
         let text = texts.get(entry.id.experiment.case.as_str());
-        !drawn.contains_key(&entry.id) && text.is_none_or(|text| *text == entry.case)
+        !drawn.contains(&entry.id) && text.is_none_or(|text| *text == entry.case)
     });
     kept.cloned().collect()
 }

@@ -5,12 +5,11 @@ use crate::bench::stored::{Change, Comparison};
 use crate::case::id::ExperimentId;
 use crate::report::changes::{Changes, Difference, LeftOut, closing, counts, not_empty};
 use numeric::digits::{fixed, short};
-use numeric::order;
 
 /// Returns the table of changes with its remarks; slower experiments come first.
 pub fn changes(comparison: &Comparison) -> Changes {
     let mut all: Vec<Difference> = comparison.changes.iter().map(difference).collect();
-    order::sort_by_key(&mut all, |change| !change.is_worse);
+    all.sort_by_key(|change| !change.is_worse);
     Changes { name: comparison.name.clone(), all, remarks: remarks(comparison) }
 }
 

@@ -4,7 +4,6 @@
 //! one is drawn over it with gaps.
 
 use crate::report::lists::{grouped, joined};
-use numeric::order;
 
 /// Length of a stripe, in pixels.
 const STRIPE: f64 = 9.0;
@@ -71,7 +70,7 @@ pub fn classes(lines: &[Line], dashes: &[&[f64]]) -> Vec<Class> {
         .collect();
     let gaps =
         |class: &Class| if class.members.len() > 1 { 0.0 } else { gaps(dashes[class.members[0]]) };
-    order::sort_by(&mut classes, |a, b| {
+    classes.sort_by(|a, b| {
         let [long, other] = [a, b].map(|class| lines[class.members[0]].length());
         other.cmp(&long).then(gaps(a).total_cmp(&gaps(b)))
     });

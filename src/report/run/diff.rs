@@ -5,7 +5,6 @@ use crate::record::baseline::{Change, ChannelId, Comparison, Drift, Measured, Qu
 use crate::report::changes::{Changes, Difference, closing, counts, not_empty};
 use crate::report::html::words::evidence;
 use numeric::digits::{fixed, short};
-use numeric::order;
 
 /// Returns the table of changes with its remarks.
 pub fn changes(comparison: &Comparison) -> Changes {
@@ -80,7 +79,7 @@ pub fn all(comparison: &Comparison) -> Vec<Difference> {
     let mut all: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
     let tolerance = comparison.rules.time_tolerance;
     all.extend(comparison.changes.iter().map(|one| change(one, tolerance)));
-    order::sort_by_key(&mut all, |change| !change.is_worse);
+    all.sort_by_key(|change| !change.is_worse);
     all
 }
 

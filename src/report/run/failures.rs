@@ -6,7 +6,6 @@ use crate::report::lists::joined;
 use crate::report::run::checks_csv::FindingRow;
 use crate::report::run::summary_csv::Line;
 use gate::causes::{Pattern, Place};
-use numeric::order;
 
 /// Finding with another verdict than pass, with its row.
 #[derive(Debug, Clone, Copy)]
@@ -161,7 +160,7 @@ fn place(row: &Row) -> Place {
         Some((other.experiment.swept()?, other.verdict == Some(Verdict::Fail)))
     });
     let mut along: Vec<(f64, bool)> = along.collect();
-    order::sort_by(&mut along, |a, b| a.0.total_cmp(&b.0));
+    along.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Failing values must be contiguous: exactly one change along the sweep.
     let changes = along.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
     match (along.len() >= MIN_POINTS && changes == 1, along.first()) {

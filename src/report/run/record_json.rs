@@ -6,6 +6,8 @@
 //! `sampling`, `control`, `swept` and `namesake`; `timing.experiments` has the times of each `id`. Unknown numbers are
 //! `null`; numbers that may be infinite are then the words `inf`, `-inf` or `nan`. Records of schema 1 are read, too.
 
+use std::collections::BTreeMap;
+
 use serde::de::Error;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -14,7 +16,6 @@ use crate::plan::ExperimentId;
 use crate::record::baseline::Comparison;
 use crate::record::{Record, Results, SCHEMA, Spent, Timing, version1};
 use crate::report::{Artifact, ReportError};
-use numeric::order;
 
 /// Returns the record as one JSON object.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
@@ -92,10 +93,11 @@ pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
     };
     let document: Document<Results> = serde_json::from_value(tree)?;
     let Document { mut results, timing, comparison, .. } = document;
-    let times = timing.experiments.into_iter();
-    let times = order::map(
-        times.map(|Time { id, seconds, reused }| (id, Spent { seconds, is_reused: reused })),
-    );
+    let times: BTreeMap<ExperimentId, Spent> = timing
+        .experiments
+        .into_iter()
+        .map(|Time { id, seconds, reused }| (id, Spent { seconds, is_reused: reused }))
+        .collect();
     for case in &mut results.cases {
         for experiment in &mut case.experiments {
             experiment.spent = times.get(&experiment.id).copied().unwrap_or_default();

@@ -5,7 +5,6 @@ use crate::LISTED;
 use gate::causes::Pattern;
 use gate::stats::gate::Evidence;
 use gate::stats::verdict::{MISS, Verdict};
-use numeric::order;
 
 /// Verdict on a stack, with its numbers.
 #[derive(Debug, Clone)]
@@ -237,7 +236,7 @@ fn counts(tiles: &[Tile]) -> Counts {
 fn worst(tiles: &[Tile]) -> Vec<Tile> {
     let is_off = |tile: &&Tile| tile.is_listed || tile.verdict == Verdict::Fail;
     let mut off: Vec<&Tile> = tiles.iter().filter(is_off).collect();
-    order::sort_by(&mut off, |a, b| b.ln_e.total_cmp(&a.ln_e));
+    off.sort_by(|a, b| b.ln_e.total_cmp(&a.ln_e));
     let mut worst: Vec<Tile> = Vec::new();
     for tile in off {
         if worst.len() < WORST && !worst.iter().any(|other| other.is_at(tile)) {

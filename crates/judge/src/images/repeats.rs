@@ -31,7 +31,6 @@ use super::claim::Pixels;
 use super::picture::Stack;
 use super::variance;
 use gate::stats::independence::Signs;
-use numeric::order;
 
 /// Approximate number of pixels that are compared.
 const PIXELS: usize = 1 << 16;
@@ -115,7 +114,7 @@ fn alike(stack: &Stack) -> Option<Repeat> {
         }
     }
     let mut pairs: Vec<_> = alike.into_iter().collect();
-    order::sort_by_key(&mut pairs, |&(_, parts)| std::cmp::Reverse(parts));
+    pairs.sort_by_key(|&(_, parts)| std::cmp::Reverse(parts));
     pairs.truncate(MAX_PAIRS);
     let evidence = |a: usize, b: usize| {
         let mut signs = Signs::default();

@@ -13,7 +13,6 @@ use crate::report::run::sweep_plot::names::{self, Course};
 use drawing::Sheet;
 use drawing::font::Typeface;
 use numeric::digits::short;
-use numeric::order;
 use plotters::style::Color;
 
 /// Width of the place of an estimator outside of the sweep, at the right edge.
@@ -123,7 +122,7 @@ impl Graph {
             let own = self.points.iter().filter(|point| point.series == index);
             let mut spots: Vec<_> = of_line.chain(own.map(|point| point.spot)).collect();
             spots.retain(|&spot| self.panel.holds(spot));
-            order::sort_by(&mut spots, |a, b| a[0].total_cmp(&b[0]));
+            spots.sort_by(|a, b| a[0].total_cmp(&b[0]));
             Course { name: one.label.clone(), colour: one.style.colour, spots }
         });
         let Panel { left, top, right, bottom, .. } = self.panel;

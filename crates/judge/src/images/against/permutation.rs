@@ -17,7 +17,6 @@
 //! tests*, Annals of Statistics 41 (2013); P. Westfall, S. Young, *Resampling-Based Multiple Testing* (1993), for `p̃`;
 //! B. Phipson, G. Smyth, *Permutation p-values should never be zero*, SAGMB 9 (2010); G. Smyth, SAGMB 3 (2004), for `v`.
 
-use numeric::order;
 use numeric::rng::{Address, unit};
 use theory::parallel;
 
@@ -114,7 +113,8 @@ impl Groups {
     pub fn compare(&self, alpha: f64, seed: u64) -> Found {
         let all = self.rows[0] + self.rows[1];
         let t = self.statistics(&(0..self.rows[0]).collect::<Vec<_>>());
-        let order = order::sorted(t.len(), &|i, j| t[i].abs().total_cmp(&t[j].abs()));
+        let mut order: Vec<usize> = (0..t.len()).collect();
+        order.sort_by(|&i, &j| t[i].abs().total_cmp(&t[j].abs()));
         // A deal adds up in another order, with other rounding.
         let limits: Vec<f64> = t.iter().map(|t| t.abs() * (1.0 - 1e-9)).collect();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 200,000
