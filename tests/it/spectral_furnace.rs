@@ -185,5 +185,5 @@ fn walks_side_by_side_are_walks_one_by_one() {
             cases.push(case(&format!("{first} and {other}, body {body}"), &text));
         }
     }
-    compare(&cases, 79);
+    compare(&cases, 39);
 }

@@ -197,7 +197,7 @@ fn shares_of_techniques_add_up() {
                 let row = &predicted(&text(scene, "{ bidirectional = {} }"))[0];
                 let truth = row.truth.expect("known");
                 let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 0 }.stream();
-                let (draws, mut sums, mut square) = (60_000, [0.0; 3], 0.0);
+                let (draws, mut sums, mut square) = (15_000, [0.0; 3], 0.0);
                 for _ in 0..draws {
                     let begin = rng;
                     let at = (&sphere, &majorants);

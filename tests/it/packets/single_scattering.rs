@@ -84,5 +84,5 @@ fn packets_are_the_scalar_draws_in_bodies_of_all_kinds() {
         );
         cases.push(case(&format!("{volume}, {light}"), &text));
     }
-    compare(&cases, 800);
+    compare(&cases, 400);
 }

@@ -61,5 +61,5 @@ fn packets_are_the_scalar_walks_in_every_field() {
             }
         }
     }
-    compare(&cases, 500);
+    compare(&cases, 250);
 }
