@@ -4,6 +4,7 @@
 //! way is charged for memory that is read or mapped for the first time. Every other round takes the ways in reverse
 //! order, so that no way always comes second.
 
+use gate::stats::verdict::BLOCK;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -12,7 +13,7 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use super::curve::Sample;
-use crate::plan::{BLOCK, Planned};
+use crate::plan::Planned;
 use estimators::{DrawBuffer, Kernel};
 
 /// Clock of the times.

@@ -11,11 +11,12 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Ready;
-use crate::plan::{BLOCK, Planned, PlannedCase};
+use crate::plan::{Planned, PlannedCase};
 use checks::batch::Batch;
 use checks::check::{Observer, Place, Total};
 use estimators::DrawBuffer;
 use gate::stats::Tally;
+use gate::stats::verdict::BLOCK;
 use numeric::rng::Streams;
 
 /// Numbers of one block of one experiment.

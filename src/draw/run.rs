@@ -19,9 +19,10 @@ use std::time::Instant;
 use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Progress};
 use crate::draw::share::{self, BlockName, Drawing, Share};
 use crate::draw::store::Store;
-use crate::plan::{BLOCK, Plan, Planned};
+use crate::plan::{Plan, Planned};
 use ::gate::session::{Sink, Until, drive};
 use ::gate::stats::gate::{self, PLANNED, TYPICAL};
+use ::gate::stats::verdict::BLOCK;
 use checks::check::Look;
 
 /// Blocks drawn between two merges, for each thread, and at most: some 600 MB. Results do not depend on it.

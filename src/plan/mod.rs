@@ -12,7 +12,6 @@ pub mod levels;
 pub mod options;
 
 pub use crate::case::id::ExperimentId;
-pub use ::gate::stats::verdict::{BLOCK, MISS};
 pub use options::{Amount, Filter, Options};
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,7 +20,7 @@ use crate::case::sweep::Variation;
 use crate::case::{Case, Ready};
 use crate::plan::levels::Levels;
 use ::gate::stats::gate;
-use ::gate::stats::verdict::Verdict;
+use ::gate::stats::verdict::{BLOCK, Verdict};
 use checks::check::Share;
 use checks::{self, Pilot, Question, Scalar, Subject};
 use estimators::{DrawBuffer, Refusal};

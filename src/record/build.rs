@@ -2,7 +2,7 @@
 
 use crate::draw::block::Draws;
 use crate::plan::levels::{Foreseen, joined};
-use crate::plan::{MISS, Plan, PlannedCase};
+use crate::plan::{Plan, PlannedCase};
 use crate::record::evaluate::{self, Judged};
 use crate::record::repeat::{command, deciding, deciding_all};
 use crate::record::{
@@ -14,6 +14,7 @@ use fearless_simd::Level;
 use gate::session::Reason;
 use gate::stats::gate::TYPICAL;
 use gate::stats::multiplicity;
+use gate::stats::verdict::MISS;
 use numeric::pack;
 
 /// Builds the record of a plan before the first draw: with the numbers of draws, and the verdicts that are certain already.

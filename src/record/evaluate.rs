@@ -12,13 +12,14 @@
 
 use crate::case::Ready;
 use crate::draw::block::{DrawnExperiment, Draws};
-use crate::plan::{BLOCK, Plan, Planned};
+use crate::plan::{Plan, Planned};
 use crate::record::{Finding, Verdict};
 use checks::check::{Context, Look, Total};
 use checks::{Inspected, Question};
 use gate::deviation::Deviation;
 use gate::session::{self, Reason};
 use gate::stats::multiplicity;
+use gate::stats::verdict::BLOCK;
 use theory::parallel;
 
 /// Experiment with its draws and the findings of its checks.

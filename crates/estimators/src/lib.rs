@@ -1,4 +1,4 @@
-//! Estimators, one page each: how a draw is made, and its prediction by theory. Floor 4.
+//! Estimators, one page each: how a draw is made, and its prediction by theory.
 //!
 //! An estimator is data. What it works on (medium, σ̂, control) is prepared once in a [`Setup`];
 //! its loop is compiled once per field type and entered once per buffer of draws. Estimators of

@@ -10,8 +10,7 @@ use numeric::rng::{Address, LANES, PACKS};
 use theory::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::channels;
-use trueflight_estimators::rod::walk::{By, InRod, Particle, WalkEvents};
-use trueflight_estimators::slab::walk::turned;
+use trueflight_estimators::rod::walk::{InRod, Particle, RuleAndRoulette, WalkEvents};
 use trueflight_estimators::sphere::connect::cone;
 use trueflight_estimators::transmittance::scoring::{Score, Share};
 use trueflight_estimators::transmittance::{
@@ -19,6 +18,7 @@ use trueflight_estimators::transmittance::{
 };
 use trueflight_estimators::walks::Walk;
 use trueflight_estimators::walks::slots::Slots;
+use trueflight_estimators::walks::steps::turned;
 
 #[test]
 fn every_draw_has_one_slot_and_lanes_take_turns() {
@@ -108,7 +108,8 @@ fn a_particle_is_seen_at_its_end_and_by_its_order() {
     let [albedo, forward] = [0.5; 2].map(|value| Piecewise::constant(value, span));
     let medium = Medium::new(Arc::new(Piecewise::constant(0.7, span)), span, span);
     let rod = Rod::new(medium, &albedo, &forward, channels(1, true, Some(2)));
-    let walk = InRod { rod: &rod, steps: By { rule: ParticleRule::Analog, roulette: None } };
+    let walk =
+        InRod { rod: &rod, steps: RuleAndRoulette { rule: ParticleRule::Analog, roulette: None } };
     let values = |particle: &Particle<f64>, left| {
         let value = |channel| walk.value(particle, left, channel);
         (0..walk.channels()).map(value).collect::<Vec<_>>()
@@ -124,7 +125,7 @@ fn a_particle_is_seen_at_its_end_and_by_its_order() {
 
 #[test]
 fn what_roulette_takes_it_gives_back() {
-    let steps = By { rule: ParticleRule::NonTerminating, roulette: Some(0.4) };
+    let steps = RuleAndRoulette { rule: ParticleRule::NonTerminating, roulette: Some(0.4) };
     let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
     let mut kept =
         |mut weight: f64| steps.survive::<f64>(true, &mut weight, &mut rng).then_some(weight);

@@ -1,6 +1,6 @@
 //! Extinction fields, one page each: along a ray, and as volumes that a ray is clipped to.
 //!
-//! Floor 1. A field of one coordinate implements [`Stratified`], which makes a medium along a line and plane-parallel
+//! A field of one coordinate implements [`Stratified`], which makes a medium along a line and plane-parallel
 //! layers of it. Other fields implement [`Extinction`] and [`OpticalDepth`] along a ray, and [`Field`] in space, and
 //! are read from case files by their `reader`. The role of a field (medium, control variate) is its place in a struct;
 //! the sampling extinction and its flights are in [`sampling`].

@@ -1,6 +1,6 @@
 //! Numbers: lanes and their elementary functions, power series, exact sums, quadrature, roots.
 //!
-//! Floor 0. Nothing here depends on light, media or statistics.
+//! Nothing here depends on light, media or statistics.
 
 pub mod adaptive;
 pub mod cumulative;

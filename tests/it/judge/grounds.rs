@@ -1,11 +1,12 @@
 //! Verdicts need grounds: missing evidence is no reason to fail.
 
+use gate::stats::verdict::BLOCK;
 use lab::self_test::streams::{self, CLAIMS, LAWS, Law};
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::estimators::DrawBuffer;
 use trueflight::judge::{CheckedClaim, Claim, Options, ROUNDING};
-use trueflight::plan::{self, BLOCK, Plan};
+use trueflight::plan::{self, Plan};
 use trueflight::record::Verdict;
 
 use super::{Place, raw, uniform};

@@ -15,13 +15,13 @@ use std::path::Path;
 use std::process::Output;
 
 use assert_cmd::Command;
+use gate::stats::verdict::BLOCK;
 use tempfile::TempDir;
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Amount;
-use trueflight::plan::BLOCK;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::record::{Finding, build};

@@ -58,7 +58,7 @@ impl WalkEvents for Right {}
 
 /// A walker, and the channels that its walks score.
 #[derive(Clone, Copy)]
-pub struct By<'a> {
+pub struct WalkerWeights<'a> {
     /// The walker.
     pub walker: &'a Walker,
     /// The weighting of walks by the balance heuristic.
@@ -67,7 +67,7 @@ pub struct By<'a> {
     pub scores_all: bool,
 }
 
-impl<'a> By<'a> {
+impl<'a> WalkerWeights<'a> {
     /// A walker with the right weighting.
     pub fn new(walker: &'a Walker, scores_all: bool) -> Self {
         Self { walker, weighing: WEIGHING, scores_all }
@@ -79,7 +79,7 @@ pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
     /// The walk by steps; packs provide their [`Chromatic::fields`].
     fn walk<'a>(
         steps: impl WalkEvents,
-        by: By<'a>,
+        by: WalkerWeights<'a>,
         setup: &'a Setup<Self>,
         fields: &'a [Batches<'a>],
     ) -> impl Walk;
@@ -94,7 +94,7 @@ pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
     #[inline(always)]
     fn draw(
         steps: impl WalkEvents,
-        by: By,
+        by: WalkerWeights,
         setup: &Setup<Self>,
         medium: &Lookups,
         random: &mut Stream,
@@ -135,7 +135,7 @@ pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
 pub const WEIGHING: Weighing = Weighing { has_next_event: false, ..Weighing::RIGHT };
 
 /// Makes the draws of a request: compiled once for all walkers.
-pub fn fill<P: Chromatic>(by: By, kernel: Kernel, setup: &Setup<P>, request: Request) {
+pub fn fill<P: Chromatic>(by: WalkerWeights, kernel: Kernel, setup: &Setup<P>, request: Request) {
     walks::by(
         kernel,
         setup,

@@ -1,6 +1,6 @@
 //! The page of all walkers in all bodies: their settings, domain, prediction and draws.
 
-use super::{By, Chromatic, fill};
+use super::{Chromatic, WalkerWeights, fill};
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{INDEPENDENT, MIS, Walker};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
@@ -61,6 +61,6 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for OfKind<KIND> {
     }
 
     fn fill(&self, kernel: Kernel, setup: &Setup<P>, request: Request) {
-        fill(By::new(&self.0, Self::SCORES_ALL), kernel, setup, request);
+        fill(WalkerWeights::new(&self.0, Self::SCORES_ALL), kernel, setup, request);
     }
 }

@@ -7,7 +7,7 @@ pub mod spectral_tracking;
 pub mod walk;
 
 use self::walk::InSlab;
-use super::chromatic::{By, Chromatic, WalkEvents};
+use super::chromatic::{Chromatic, WalkEvents, WalkerWeights};
 use super::slab::{in_channel, require_answer};
 use crate::setup::channels;
 use crate::setup::walker::Walker;
@@ -38,7 +38,7 @@ impl Chromatic for ChromaticSlab {
     #[inline(always)]
     fn walk<'a>(
         steps: impl WalkEvents,
-        by: By<'a>,
+        by: WalkerWeights<'a>,
         setup: &'a Setup<Self>,
         _: &'a [Batches<'a>],
     ) -> impl Walk {

@@ -15,16 +15,15 @@ use std::f64::consts::TAU;
 
 use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
-use crate::chromatic::{By, WalkEvents};
+use crate::chromatic::{WalkEvents, WalkerWeights};
 use crate::setup::walker::Walker;
-use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
+use crate::walks::steps::{diffuse, entering, turned};
 use crate::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::body::MAX_CHANNELS;
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, Span, kept};
-use theory::ParticleRule;
 use theory::problems::ChromaticSlab;
 use theory::problems::channels::End;
 
@@ -45,9 +44,9 @@ pub struct InSlab<'a, S> {
 impl<'a, S: WalkEvents> InSlab<'a, S> {
     /// The walk by steps on a setup.
     #[inline(always)]
-    pub fn new(steps: S, by: By<'a>, setup: &'a Setup<ChromaticSlab>) -> Self {
+    pub fn new(steps: S, by: WalkerWeights<'a>, setup: &'a Setup<ChromaticSlab>) -> Self {
         let (problem, count) = (&*setup.problem, setup.fields.len());
-        let By { walker, weighing, scores_all } = by;
+        let WalkerWeights { walker, weighing, scores_all } = by;
         let [mut mean_free_paths, mut probabilities] = [[0.0; MAX_CHANNELS]; 2];
         let mut phases = [problem.incidences[0].phase; MAX_CHANNELS];
         for (channel, own) in setup.fields.iter().enumerate() {
@@ -134,7 +133,7 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
         path.majorant.keep_where(which, number_of_hero(hero, &media.majorants[..count]));
         path.albedo.keep_where(which, number_of_hero(hero, &albedos[..count]));
         let light = self.setup.problem.incidences[0].light;
-        let cosine = entering(light, &ParticleRule::Analog, which, one, random);
+        let cosine = entering(light, diffuse, which, one, random);
         path.cosine.keep_where(which, cosine);
         path.length.keep_where(which, zero);
         if self.scores_all {

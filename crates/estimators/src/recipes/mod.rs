@@ -1,4 +1,4 @@
-//! Recipes for the sampling extinction σ̂ and for the control σ_c: how a case's words become fields. Floor 4.
+//! Recipes for the sampling extinction σ̂ and for the control σ_c: how a case's words become fields.
 
 pub mod controls;
 pub mod sampling;

@@ -14,7 +14,7 @@ use theory::collisions::particle::RatioRange;
 use theory::problems::Rod;
 use theory::rod::{self, NoVariance};
 use theory::{ParticleRule, Prediction};
-use walk::By;
+use walk::RuleAndRoulette;
 
 /// A problem with walks that collide by a rule; its estimators have common pages.
 pub trait ByRule: Estimated {
@@ -91,7 +91,7 @@ impl ByRule for Rod {
     }
 
     fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request) {
-        walk::fill(By { rule, roulette: None }, kernel, setup, request);
+        walk::fill(RuleAndRoulette { rule, roulette: None }, kernel, setup, request);
     }
 }
 

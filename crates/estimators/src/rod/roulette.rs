@@ -25,7 +25,7 @@
 //! of `non-terminating`.
 
 use super::ByRule;
-use super::walk::{self, By};
+use super::walk::{self, RuleAndRoulette};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::{Domain, Settings};
 use theory::problems::Rod;
@@ -41,8 +41,8 @@ pub struct Roulette {
 
 impl Roulette {
     #[inline(always)]
-    fn steps(self) -> By {
-        By { rule: ParticleRule::NonTerminating, roulette: Some(self.below) }
+    fn steps(self) -> RuleAndRoulette {
+        RuleAndRoulette { rule: ParticleRule::NonTerminating, roulette: Some(self.below) }
     }
 }
 

@@ -15,6 +15,7 @@
 //! A flight and the event at its end take a random number each; a scattering takes a third, and so does roulette.
 //! [`line`] follows one particle of this walk, or sixteen side by side.
 
+use crate::walks::steps::roulette;
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::sampling::BothWays;
@@ -161,16 +162,16 @@ pub trait WalkEvents: Copy {
     ) -> L::Mask;
 }
 
-/// The right steps: a rule, with or without roulette.
+/// Unmodified events of the walk: a rule, with or without roulette.
 #[derive(Debug, Clone, Copy)]
-pub struct By {
+pub struct RuleAndRoulette {
     /// The rule at a collision.
     pub rule: ParticleRule,
     /// w₀, the weight below which roulette is played.
     pub roulette: Option<f64>,
 }
 
-impl WalkEvents for By {
+impl WalkEvents for RuleAndRoulette {
     #[inline(always)]
     fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
         self.rule.probabilities(ratio, albedo)
@@ -183,12 +184,7 @@ impl WalkEvents for By {
         weight: &mut L,
         rng: &mut impl Random<L>,
     ) -> L::Mask {
-        let Some(least) = self.roulette.map(|least| weight.each(least)) else { return goes_on };
-        let size = weight.size();
-        let plays = goes_on & size.below(least);
-        let survives = (rng.uniform_where(plays) * least).below(size);
-        weight.set_where(plays, least.with_sign_of(*weight));
-        goes_on & (!plays | survives)
+        roulette(self.roulette, goes_on, weight, rng)
     }
 }
 

@@ -1,5 +1,4 @@
 //! Medium, σ̂ and control of an estimator, prepared once per experiment, and the requirements on them.
-//! Floor 4.
 
 pub mod channels;
 pub mod heroes;

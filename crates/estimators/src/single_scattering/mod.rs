@@ -2,7 +2,6 @@
 
 pub mod attenuation_driven;
 pub mod attenuation_resampled;
-pub mod connection;
 pub mod delta_tracking;
 mod ground;
 mod interactions;

@@ -15,6 +15,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::walks::steps::{diffuse, entering, turned};
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::phase::Phase;
@@ -25,7 +26,7 @@ use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::collisions::particle::EventProbabilities;
 use theory::problems::Slab;
-use theory::problems::slab::{Incidence, Light};
+use theory::problems::slab::Incidence;
 
 kept! {
     /// Particles on their way.
@@ -53,7 +54,8 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, which: L::Mask, rng: &mut impl Random<L>) -> Particle<L> {
-        let cosine = entering(self.incidence.light, &self.steps, which, one, rng);
+        let cosine =
+            entering(self.incidence.light, |number| self.steps.diffuse(number), which, one, rng);
         Particle { cosine, weight: one }
     }
 
@@ -107,34 +109,9 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
     }
 }
 
-/// The cosines with which particles enter. Only lanes in the mask take a random number, and only for diffuse light.
-#[inline(always)]
-pub fn entering<L: Lane>(
-    light: Light,
-    steps: &impl WalkEvents,
-    which: L::Mask,
-    one: L,
-    rng: &mut impl Random<L>,
-) -> L {
-    match light {
-        Light::Collimated(cosine) => one.each(cosine),
-        Light::Diffuse => steps.diffuse(rng.uniform_where(which)),
-    }
-}
-
 #[inline(always)]
 fn is_down<L: Lane>(particle: &Particle<L>) -> L::Mask {
     particle.cosine.each(0.0).below(particle.cosine)
-}
-
-/// The cosine with the normal after a deflection about the direction of travel.
-#[inline(always)]
-pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
-    let (zero, one) = (cosine.each(0.0), cosine.each(1.0));
-    let across = (one - cosine * cosine) * (one - deflection * deflection);
-    // Rounding may carry a sum past 1, and a product below 0.
-    let turned = cosine * deflection + across.or_more(zero).root() * azimuth;
-    turned.or_less(one).or_more(-one)
 }
 
 /// Events of a walk, each of which a known bug may replace.
@@ -157,7 +134,7 @@ pub trait WalkEvents: Copy {
     /// The cosine of diffuse light, in `(0, 1]`, from a uniform number.
     #[inline(always)]
     fn diffuse<L: Lane>(&self, number: L) -> L {
-        number.one_minus().root()
+        diffuse(number)
     }
 }
 

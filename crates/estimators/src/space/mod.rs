@@ -1,5 +1,6 @@
 //! Walks of particles through volumes: common parts of all problems in space.
 
+pub mod connection;
 pub mod draws;
 mod events;
 pub mod particle;

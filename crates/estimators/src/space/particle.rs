@@ -1,8 +1,7 @@
 //! The settings of a particle: its rule, roulette and splitting.
 
 use super::events::WalkEvents;
-use crate::rod;
-use crate::rod::walk::WalkEvents as _;
+use crate::walks::steps::roulette;
 use media::catalogue::{Domain, Settings};
 use numeric::Lane;
 use numeric::rng::Random;
@@ -97,13 +96,6 @@ fn whole(count: u64) -> u32 {
     count as u32
 }
 
-impl Particle {
-    #[inline(always)]
-    fn by(&self) -> rod::walk::By {
-        rod::walk::By { rule: self.rule, roulette: self.roulette }
-    }
-}
-
 impl WalkEvents for Particle {
     #[inline(always)]
     fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
@@ -117,6 +109,6 @@ impl WalkEvents for Particle {
         weight: &mut L,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        self.by().survive(goes_on, weight, random)
+        roulette(self.roulette, goes_on, weight, random)
     }
 }

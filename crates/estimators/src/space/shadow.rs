@@ -8,7 +8,7 @@
 //! A flight along a shadow ray is a step like any other: it shares its logarithm and its lookup with the
 //! walks of the other lanes.
 
-use crate::single_scattering::connection;
+use super::connection;
 use media::{Batches, Volume};
 use numeric::geometry::exit::{along, rows};
 use numeric::geometry::{Bounds, Point, Ray};

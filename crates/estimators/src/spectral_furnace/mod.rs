@@ -9,7 +9,7 @@ pub mod walk;
 use fearless_simd::Level;
 
 use self::walk::InFurnace;
-use super::chromatic::{By, Chromatic, WalkEvents};
+use super::chromatic::{Chromatic, WalkEvents, WalkerWeights};
 use crate::setup::walker::Walker;
 use crate::walks::Walk;
 use crate::{Refusal, Setup, estimators};
@@ -50,7 +50,7 @@ impl Chromatic for SpectralFurnace {
     #[inline(always)]
     fn walk<'a>(
         steps: impl WalkEvents,
-        by: By<'a>,
+        by: WalkerWeights<'a>,
         setup: &'a Setup<Self>,
         fields: &'a [Batches<'a>],
     ) -> impl Walk {

@@ -13,7 +13,7 @@
 
 use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
-use crate::chromatic::{By, WalkEvents};
+use crate::chromatic::{WalkEvents, WalkerWeights};
 use crate::setup::walker::Walker;
 use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
 use crate::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
@@ -66,12 +66,12 @@ impl<'a, S: WalkEvents> InFurnace<'a, S> {
     #[inline(always)]
     pub fn new(
         steps: S,
-        by: By<'a>,
+        by: WalkerWeights<'a>,
         setup: &'a Setup<SpectralFurnace>,
         fields: &'a [Batches<'a>],
     ) -> Self {
         let (problem, count) = (&*setup.problem, setup.fields.len());
-        let By { walker, weighing, scores_all } = by;
+        let WalkerWeights { walker, weighing, scores_all } = by;
         let media = Media::new(setup, &walker.probabilities(count));
         let mut phases = [problem.channels[0].phase; MAX_CHANNELS];
         for (channel, own) in problem.channels.iter().enumerate() {

@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 use super::Coloured;
 use crate::setup::heroes::Heroes;
-use crate::slab::walk::{entering, turned};
 use crate::walks::hero::{Law, number_of_hero};
+use crate::walks::steps::{diffuse, entering, turned};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Kernel, Refusal, Request, Setup};
 use media::Lookups;
@@ -212,7 +212,7 @@ impl Walk for InBody<'_> {
             Place::Rod(_) => Light::Collimated(1.0),
             Place::Slab(incidence) => incidence.light,
         };
-        let cosine = entering(light, &ParticleRule::Analog, which, one, random);
+        let cosine = entering(light, diffuse, which, one, random);
         let chance = number_of_hero(hero, &self.chances[..self.heroes]);
         Particle { cosine, hero, chance, order: zero }
     }

@@ -23,7 +23,7 @@
 use super::connect::{Seeker, aim, meets_light, share};
 use super::emission;
 use super::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
-use crate::single_scattering::connection;
+use crate::space::connection;
 use crate::space::segment::Tracker;
 use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
 use crate::space::tally::{Collision, Departure, Scattering, Tally};

@@ -29,8 +29,8 @@
 use super::page::{Connected, DIRECTIONAL, Method};
 use super::sharing::SharedTechniques;
 use crate::setup::heuristic;
-use crate::single_scattering::connection;
 use crate::space::Particle;
+use crate::space::connection;
 use media::catalogue::Settings;
 use theory::light::Densities;
 use theory::space::sphere::Techniques;

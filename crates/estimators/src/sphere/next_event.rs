@@ -26,8 +26,8 @@
 
 use super::page::{Connected, Method, NEXT_EVENT};
 use super::sharing::SharedTechniques;
-use crate::single_scattering::connection;
 use crate::space::Particle;
+use crate::space::connection;
 use media::catalogue::Settings;
 use theory::space::sphere::Techniques;
 

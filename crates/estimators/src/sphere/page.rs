@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use super::combined::Combined;
 use super::sharing::{Correct, SharedTechniques, Subpaths, WalkEvents};
 use super::{bidirectional, connected, directional_mis, full_mis, next_event, realisable};
-use crate::single_scattering::connection;
+use crate::space::connection;
 use crate::space::{Particle, Splitting, draws};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::Majorants;

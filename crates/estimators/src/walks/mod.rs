@@ -38,6 +38,7 @@ mod outcomes;
 pub mod plain;
 mod route;
 pub mod slots;
+pub mod steps;
 pub mod window;
 
 use media::Batches;

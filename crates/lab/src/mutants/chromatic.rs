@@ -9,7 +9,7 @@
 //! score nothing, and show no bug.
 
 use super::{Line, Mutant, On, family, on, one_by_one};
-use estimators::chromatic::{By, Chromatic, Right, WEIGHING, WalkEvents};
+use estimators::chromatic::{Chromatic, Right, WEIGHING, WalkEvents, WalkerWeights};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::walks::hero::{LastPiece, Weighing};
@@ -97,13 +97,13 @@ struct Wrong {
 }
 
 impl Wrong {
-    fn by(&self) -> By<'_> {
+    fn by(&self) -> WalkerWeights<'_> {
         let weighing = match self.bug {
             Bug::Dropped => Weighing { missing: 1, ..WEIGHING },
             Bug::ExitMissing => Weighing { last_piece: LastPiece::Nowhere, ..WEIGHING },
             _ => WEIGHING,
         };
-        By { walker: &self.walker, weighing, scores_all: true }
+        WalkerWeights { walker: &self.walker, weighing, scores_all: true }
     }
 }
 

@@ -12,7 +12,7 @@
 //! ```
 
 use super::{Line, Mutant, On, family, filled, on, one_by_one};
-use estimators::rod::walk::{self as rod, By, InRod};
+use estimators::rod::walk::{self as rod, InRod, RuleAndRoulette};
 use estimators::slab::walk::{self as slab, InSlab};
 use estimators::space::{self, Particle, Splitting, Walked};
 use estimators::walks;
@@ -137,7 +137,7 @@ const UNDER_LIGHT: &[Line<Particle, Bug>] = &[
 pub fn in_rod() -> Vec<Mutant<Rod>> {
     family(IN_ROD, &Bug::None, |&right, &bug| {
         let Particle { rule, roulette, .. } = bug.particle(right);
-        let steps = Wrong(By { rule, roulette }, bug);
+        let steps = Wrong(RuleAndRoulette { rule, roulette }, bug);
         filled(move |setup, request| {
             walks::in_turn(&InRod { rod: &setup.problem, steps }, setup, request);
         })
@@ -225,7 +225,7 @@ impl<S> Wrong<S> {
     }
 }
 
-impl rod::WalkEvents for Wrong<By> {
+impl rod::WalkEvents for Wrong<RuleAndRoulette> {
     fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
         self.probabilities(rod::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
     }

@@ -7,12 +7,13 @@
 use crate::mutants::{self, About, Caught, StreamMutant, Target, streams};
 use estimators::{DrawBuffer, Experiment, Refusal};
 use gate::causes::Pattern;
+use gate::stats::verdict::BLOCK;
 use numeric::rng::Address;
 use theory::parallel;
 use trueflight::case::{Case, CaseError, suite};
 use trueflight::draw::run;
 use trueflight::plan::options::{Amount, Options};
-use trueflight::plan::{BLOCK, Plan, Planned};
+use trueflight::plan::{Plan, Planned};
 use trueflight::record::{Finding, Verdict, evaluate};
 
 pub use crate::mutants::Walk;

@@ -1,4 +1,4 @@
-//! Pages of a catalogue, and the reader of their settings. Floor 0.
+//! Pages of a catalogue, and the reader of their settings.
 //!
 //! A catalogue is a list of pages: media, sampling extinctions, controls, estimators, checks. A
 //! page is one source file. Its name in case files is the file's name with hyphens, and its text

@@ -1,4 +1,4 @@
-//! Files that are written completely or not at all. Floor 0.
+//! Files that are written completely or not at all.
 //!
 //! A file is written under a temporary name beside its place and then renamed. A killed run therefore leaves no
 //! incomplete file and loses nothing that was written before.

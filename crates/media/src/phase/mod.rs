@@ -1,4 +1,4 @@
-//! Phase functions, one page each: the distribution of scattered light over directions. Floor 1.
+//! Phase functions, one page each: the distribution of scattered light over directions.
 //!
 //! Everywhere in this crate `cos θ` is that of the angle between the two directions of *travel*,
 //! before and after: `cos θ = 1` is straight on, `cos θ = −1` straight back. Light that comes from a

@@ -1,4 +1,4 @@
-//! Points, rays and the bodies that bound a medium. Floor 0.
+//! Points, rays and the bodies that bound a medium.
 
 pub mod bounds;
 pub mod exit;

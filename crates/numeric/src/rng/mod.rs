@@ -1,4 +1,4 @@
-//! Random numbers by address. Floor 0.
+//! Random numbers by address.
 //!
 //! Every random number of a run has an address: (seed, experiment, block, lane) names a stream,
 //! and the position in the stream is fixed by the draw. Threads, shards and machines are no part

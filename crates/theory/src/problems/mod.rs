@@ -1,4 +1,4 @@
-//! Problems: the quantities that estimators answer, each with the settings of its cases. Floor 2.
+//! Problems: the quantities that estimators answer, each with the settings of its cases.
 
 pub mod ball;
 pub mod bidirectional_rod;

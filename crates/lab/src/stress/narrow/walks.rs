@@ -11,7 +11,7 @@ use super::Along::{Depth, Origin, Steps};
 use super::scene::{BALL, LIT, RAY, Scene};
 use super::trail::{Precision, Traced, Trail};
 use estimators::free_flight::woodcock::Flights;
-use estimators::rod::walk::{By, InRod};
+use estimators::rod::walk::{InRod, RuleAndRoulette};
 use estimators::setup::OnRay;
 use estimators::single_scattering::plan::{Absorption, Plan, Run, Technique, Vertices};
 use estimators::slab::walk::InSlab;
@@ -153,7 +153,7 @@ on_ray! {
     [H: Share + Sync] Scored<H>, Transmittance: |Self(share), setup| Scoring::new(*share, setup);
     [] OnCurve, TransmittanceCurve: |_, setup| Curve::new(setup);
     [] Distance, FreeFlight: |_, setup| Flights::new(setup);
-    [] By, Rod: |steps, setup| InRod { rod: &setup.problem, steps: *steps };
+    [] RuleAndRoulette, Rod: |steps, setup| InRod { rod: &setup.problem, steps: *steps };
     [] InLayers, Slab: |Self(rule), setup| InSlab::of(&setup.problem, *rule);
 }
 
@@ -218,8 +218,8 @@ const fn walks<P>(rule: ParticleRule) -> Walks<P> {
     Walks(particle(rule), PhantomData)
 }
 
-const fn rod(rule: ParticleRule) -> By {
-    By { rule, roulette: None }
+const fn rod(rule: ParticleRule) -> RuleAndRoulette {
+    RuleAndRoulette { rule, roulette: None }
 }
 
 const fn plan(technique: Technique) -> Plan {
@@ -335,7 +335,7 @@ pub const RODS: &[Entry] = &[
     entry(("rod, analog", EVERY, ROD), "analog = { SAMPLING }", false, &rod(Analog)),
     entry(("rod, weighted", EVERY, ROD), "weighted = { SAMPLING }", false, &rod(Weighted)),
     entry(("rod, non-terminating", EVERY, ROD), "non-terminating = { SAMPLING }", false, &rod(NonTerminating)),
-    entry(("rod, roulette", EVERY, ROD), "roulette = { below = 0.1, SAMPLING }", false, &By { rule: NonTerminating, roulette: Some(0.1) }),
+    entry(("rod, roulette", EVERY, ROD), "roulette = { below = 0.1, SAMPLING }", false, &RuleAndRoulette { rule: NonTerminating, roulette: Some(0.1) }),
     entry(("rod, analog, transmitted", EVERY, at_end(ROD)), "analog = { SAMPLING }", false, &rod(Analog)),
 ];
 

@@ -13,13 +13,10 @@
 //! on the way to the point. One is cast where a tracked weight has become 0, because the probability of that
 //! depends on the rounding of σ̂ and σ_t.
 
-use crate::{Refusal, Setup};
 use media::Volume;
 use media::catalogue::{Domain, Settings};
-use numeric::digits::{number, rounded};
 use numeric::geometry::Ray;
 use numeric::{Lane, Span};
-use theory::problems::SingleScattering;
 use theory::single::Tracking;
 
 /// Reads `shadow`.
@@ -59,31 +56,6 @@ pub fn shadow_label(shadow: Tracking) -> String {
 /// Known quantities that exact shadow rays need.
 pub fn shadow_needs(shadow: Tracking) -> Option<&'static str> {
     (shadow == Tracking::Exact).then_some("τ")
-}
-
-/// Checks delta tracking of shadow rays: it needs a majorant on every ray, and its walks must end.
-///
-/// # Errors
-///
-/// The bound on σ_t that the majorant does not reach, or the expected number of collisions.
-pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
-    if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
-        let collisions = sampling * setup.fields.mesh.support().length();
-        if collisions.is_nan() || collisions > 1e6 {
-            let needs = "a shadow's σ̂ of at most 1e6 collisions on the ray's length";
-            return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
-        }
-    }
-    let Tracking::Delta { sampling } = shadow else { return Ok(()) };
-    let bound = setup.problem.shadow_majorant();
-    if sampling >= bound * (1.0 - 1e-12) {
-        return Ok(());
-    }
-    let needs = "σ̄ ≥ σ_t on every shadow ray";
-    Err(Refusal::mismatch(
-        needs,
-        format!("σ̄ = {} and σ_t is bounded by {} only", number(sampling), rounded(bound)),
-    ))
 }
 
 /// The transmittance of an interval of a ray within the bounds of a volume, in closed form.
