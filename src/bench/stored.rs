@@ -16,7 +16,7 @@ use crate::case::id::ExperimentId;
 use crate::record::baseline::{self, Baseline, BaselineError, Matches};
 
 /// The version of the file's form.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 1;
 
 /// A stored bench.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -198,7 +198,7 @@ mod tests {
             speedup: Spread::of([4.0]).expect("rounds"),
         });
         Stored {
-            schema: 1,
+            schema: SCHEMA,
             version: String::new(),
             threads: 1,
             clock: Clock::Processor,

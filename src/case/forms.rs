@@ -8,29 +8,6 @@ use media::catalogue::{Entry, Settings};
 use theory::problems::ProblemOption;
 use theory::problems::options::{chosen, listed};
 
-/// Problems of earlier versions, each with its new name and the settings that a case then gives.
-const OLD_PROBLEMS: [(&str, &str, &str); 12] = [
-    ("transmittance-curve", "transmittance", "`distances`, as in `distances = 8`"),
-    ("spectral-transmittance", "transmittance", "a list of several media"),
-    ("lit-rod", "rod", "`light = \"emitter\"`"),
-    ("spectral-rod", "rod", "`albedos`"),
-    ("spectral-lit-rod", "rod", "`light = \"emitter\"`, `albedos` and a list of several media"),
-    ("bidirectional-rod", "rod", "`sensor`"),
-    ("lit-slab", "slab", "`light`"),
-    ("spectral-slab", "slab", "`albedos`"),
-    ("chromatic-slab", "slab", "`albedos`, `phases` and a list of several media"),
-    ("spectral-single-scattering", "single-scattering", "`albedos`, `phases` and several volumes"),
-    ("spectral-furnace", "furnace", "`albedos`, `phases` and several volumes"),
-    ("sphere", "ball", ""),
-];
-
-/// Explains the name of a problem of earlier versions in a file's section, `problem` or `picture`: message and cure.
-pub fn explain_problem(section: &str, name: &str) -> Option<[String; 2]> {
-    let (old, new, option) = OLD_PROBLEMS.into_iter().find(|(old, ..)| *old == name)?;
-    let with = if option.is_empty() { String::new() } else { format!(", with {option}") };
-    Some([format!("`{old}` is now `{new}`{with}"), format!("write `{section}.{new}`{with}")])
-}
-
 /// Explains the name of an estimator that another form of a problem has: message and cure. `own` are the options of the
 /// case's form.
 pub fn explain_estimator(problem: &str, own: &[ProblemOption], name: &str) -> Option<[String; 2]> {
@@ -100,14 +77,5 @@ mod tests {
             ])
         );
         assert_eq!(says(&[], "no-such"), None);
-    }
-
-    #[test]
-    fn every_old_problem_has_a_new_one() {
-        let problems = theory::problems::CATALOGUE.pages;
-        for (old, new, _) in OLD_PROBLEMS {
-            assert!(problems.iter().any(|page| page.name() == new), "{new}");
-            assert!(problems.iter().all(|page| page.name() != old), "{old}");
-        }
     }
 }

@@ -237,8 +237,7 @@ struct Problem {
 fn read_problem(root: &Settings, known: Option<&Body>) -> Option<Problem> {
     let expect_biased = read_expect(root);
     let names = problems::CATALOGUE.names();
-    let explain = |name: &str| forms::explain_problem("problem", name);
-    let (index, settings) = root.chosen_explained("problem", &names, &explain)?;
+    let (index, settings) = root.chosen("problem", &names)?;
     let kind = build::kind(index, &settings)?;
     let body = match known {
         Some(body) => {

@@ -11,7 +11,6 @@ use super::help::Names;
 use super::listing::{Row, print_pages, print_rows};
 use super::output::Format;
 use crate::case::catalogue::{Catalogue, built_in};
-use crate::case::forms::explain_problem;
 use crate::case::suite;
 use crate::render::{self, Picture};
 use crate::{advise, phase, report};
@@ -200,9 +199,6 @@ fn fenced(toml: &str) -> String {
 
 /// Returns the error about an unknown name, with similar names.
 fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
-    if let Some([message, _]) = explain_problem("problem", name) {
-        return anyhow::anyhow!("{message}; `trueflight list problems` shows all");
-    }
     let sources = suite::suite().into_iter().chain(render::gallery()).map(|source| source.name);
     let kinds = What::value_variants().iter().map(|what| what.name());
     let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());

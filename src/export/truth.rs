@@ -1,7 +1,7 @@
 //! `truth.json`: expected values of the pixels of each picture.
 //!
 //! ```text
-//! version              1, or 2 where questions have channels; it grows when a key changes its meaning
+//! version              1; it grows when a key changes its meaning
 //! case, problem        the exported case
 //! target               "mitsuba" or "pbrt"
 //! camera_in_medium     whether the ray begins within the medium
@@ -42,15 +42,15 @@ use theory::{self, Prediction};
 pub const FILE: &str = "truth.json";
 /// Name of the case file from which theory predicts the answer.
 pub const CASE: &str = "case.toml";
-/// Versions of the file without channels and with them.
-pub const VERSIONS: [u32; 2] = [1, 2];
+/// Version of the file's format.
+pub const VERSION: u32 = 1;
 /// Number of rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
 const ROUNDINGS: f64 = 16.0;
 
 /// Expected values of pixels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// Version of the keys.
+    /// Version of the format, [`VERSION`].
     pub version: u32,
     /// The name of the case.
     pub case: String,
@@ -177,7 +177,7 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
         peak: scene.peak(),
     });
     Truth {
-        version: VERSIONS[usize::from(scene.is_coloured())],
+        version: VERSION,
         case: scene.case.clone(),
         problem: scene.problem.to_owned(),
         target: scene.target.name().to_owned(),

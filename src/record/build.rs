@@ -112,7 +112,7 @@ fn case_record(
         title: case.title.clone(),
         problem: case.problem.clone(),
         medium: case.scenario.medium().to_owned(),
-        draws_per_ray: Some(case.draws_per_ray),
+        draws_per_ray: case.draws_per_ray,
         experiments,
         sweep: curves::axis(case),
         facts: case.scenario.body().contents(),

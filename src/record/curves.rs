@@ -81,7 +81,6 @@ pub struct CurvePoint {
     /// 1/(variance · (lookups + setup lookups/draws per ray)).
     pub fom: f64,
     /// Lookups for a ray before its first draw.
-    #[serde(default)]
     pub setup_lookups: u64,
 }
 

@@ -8,7 +8,6 @@ use crate::record::{Best, Course, GateFinding, Verdict};
 
 /// Results of one experiment: one estimator at one point of the sweep.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
 pub struct ExperimentRecord {
     /// Identity of the experiment.
     pub id: ExperimentId,
@@ -70,7 +69,7 @@ pub struct ExperimentRecord {
     /// The smallest p-value of the tests of distributions.
     pub p_law: Option<f64>,
     /// The fields along the ray, one for each channel of the medium, if the experiment is refused.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub courses: Vec<Course>,
     /// Findings of all checks, in the order of the catalogue.
     pub findings: Vec<Finding>,
@@ -92,7 +91,6 @@ pub struct Spent {
 
 /// Results of one channel of an experiment.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
 pub struct ChannelRecord {
     /// The channel's name, as in `T(5)` or `reflectance`; empty if a draw is one value.
     #[serde(rename = "name")]
@@ -144,7 +142,7 @@ pub struct ChannelRecord {
     pub reason: String,
     /// Command that decides an inconclusive channel; in a plan, one that decides all of the case that it leaves
     /// inconclusive. Empty if no number of draws does, and for all other channels.
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub decide: String,
     /// `inconclusive` or `underpowered` if a plan has too few draws for a pass; `None` in a run.
     #[serde(skip_serializing_if = "Option::is_none")]

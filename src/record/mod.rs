@@ -18,7 +18,6 @@ mod experiment;
 pub(crate) mod repeat;
 pub mod scores;
 mod theory;
-pub mod version1;
 
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -34,7 +33,7 @@ use crate::record::baseline::Comparison;
 use numeric::digits::short;
 
 /// Version of the record's format: it grows when a field changes its meaning or is removed.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 1;
 
 /// A finished run, prediction or plan.
 #[derive(Debug, Clone)]
@@ -113,7 +112,6 @@ pub struct Suspect {
 
 /// Results of one case file.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
 pub struct CaseRecord {
     /// The case's name: its path below the cases folder, without `.toml`.
     pub name: String,
@@ -125,8 +123,8 @@ pub struct CaseRecord {
     pub problem: String,
     /// The field's name in the catalogue.
     pub medium: String,
-    /// Number of draws that share the setup lookups of a ray; `None` in records without it.
-    pub draws_per_ray: Option<u64>,
+    /// Number of draws that share the setup lookups of a ray.
+    pub draws_per_ray: u64,
     /// Smallest and largest bias of a mean, relative to its unit, that its experiments were planned to detect.
     pub visible_bias: Option<[f64; 2]>,
     /// Number of draws that its scalars took to pass, all together, in units of the typical number, `17 V/ε²` draws
@@ -139,10 +137,10 @@ pub struct CaseRecord {
     /// The ray seen from the side, for cases with a curve.
     pub anatomy: Option<Anatomy>,
     /// Contents of the files of the medium, a sentence each.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub facts: Vec<String>,
     /// Notes on doubtful settings of the medium and its ray, such as a ray that misses the volume, a sentence each.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
 
@@ -155,10 +153,10 @@ pub struct Timing {
     pub level: String,
     /// Wall-clock seconds of the whole run.
     pub seconds: f64,
-    /// Date and time of its end, as in `2026-11-27 11:27 UTC`; empty in records without it.
+    /// Date and time of its end, as in `2026-11-27 11:27 UTC`; empty unless a command drew.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub date: String,
-    /// Command line of the run; empty in records without it.
+    /// Command line of the run; empty unless a command drew.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub command: String,
 }

@@ -49,7 +49,6 @@ use std::path::Path;
 
 use self::scene::{Request, Scene};
 use self::subject::SUBJECTS;
-use crate::case::forms::explain_problem;
 use crate::case::spec::BuiltIn;
 use crate::case::{CaseError, Source, Spec};
 use media::catalogue::{OwnPages, Page, PageList, Settings};
@@ -95,8 +94,7 @@ impl Picture {
         let caption = if root.has("caption") { root.text("caption") } else { Some(String::new()) };
         let mut names = SUBJECTS.each_ref().map(|kind| kind.name.to_owned()).to_vec();
         names.dedup();
-        let explain = |name: &str| explain_problem("picture", name);
-        let chosen = root.chosen_explained("picture", &names, &explain);
+        let chosen = root.chosen("picture", &names);
         let scene = chosen.and_then(|(index, settings)| {
             let scene = Scene::read(subject::kind(&names[index], &settings)?, &settings);
             settings.close();

@@ -84,8 +84,4 @@ fn mistakes_in_coloured_pictures_have_their_place_and_cure() {
     let fewer = coloured().replace("{ constant.value = 0.5 }, ", "");
     let said = mistakes(&fewer);
     assert!(said.contains("`sampling` lists 2 channels, and the medium has 3"), "{said}");
-    let old = coloured().replace("picture.transmittance", "picture.spectral-transmittance");
-    let said = mistakes(&old);
-    assert!(said.contains("`spectral-transmittance` is now `transmittance`"), "{said}");
-    assert!(said.contains("write `picture.transmittance`, with a list of several media"), "{said}");
 }

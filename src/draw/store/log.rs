@@ -38,7 +38,7 @@ pub enum Key {
 }
 
 /// First line of every log; the number grows with the format.
-const FIRST: &[u8] = b"trueflight blocks 4\n";
+const FIRST: &[u8] = b"trueflight blocks 1\n";
 
 /// Bytes of a length and of a hash, and of a frame beside its content.
 const LENGTH: usize = size_of::<u32>();

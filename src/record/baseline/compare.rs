@@ -100,7 +100,7 @@ pub struct Measured {
     #[serde(with = "gate::extended")]
     pub value: f64,
     /// Standard error; `None` for times, for one figure has none.
-    #[serde(default, with = "gate::extended")]
+    #[serde(with = "gate::extended")]
     pub error: Option<f64>,
 }
 
@@ -119,7 +119,7 @@ pub struct Change {
     #[serde(with = "gate::extended")]
     pub ratio: f64,
     /// Interval of the true ratio; `None` for times.
-    #[serde(default, with = "gate::extended")]
+    #[serde(with = "gate::extended")]
     pub interval: Option<[f64; 2]>,
     /// True if it became worse.
     pub is_regression: bool,

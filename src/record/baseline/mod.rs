@@ -26,7 +26,7 @@ pub(crate) use compare::Matches;
 pub use compare::{Change, Comparison, Drift, LeftOut, Measured, Quantity, Rules, Sequel, compare};
 
 /// Version of the file's format.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 1;
 
 /// A stored run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

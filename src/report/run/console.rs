@@ -215,7 +215,7 @@ fn facts(block: &Block, view: View) -> Vec<String> {
         facts.push(format!("{} drawn each", count(drawn)));
     }
     if rows.iter().any(|row| row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0)) {
-        let shared = counted(case.draws_per_ray.unwrap_or(1), "draw");
+        let shared = counted(case.draws_per_ray, "draw");
         facts.push(format!("FoM with setup lookups shared by {shared}"));
     }
     if view == View::Run {

@@ -4,7 +4,7 @@
 //! machine), `timing`, and the `comparison` with a stored run or `null`. `results` is a tree: `cases`, each with its
 //! `experiments`, each with its `channels`. An experiment has its identity `id`, of `case`, `problem`, `estimator`,
 //! `sampling`, `control`, `swept` and `namesake`; `timing.experiments` has the times of each `id`. Unknown numbers are
-//! `null`; numbers that may be infinite are then the words `inf`, `-inf` or `nan`. Records of schema 1 are read, too.
+//! `null`; numbers that may be infinite are then the words `inf`, `-inf` or `nan`.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use crate::plan::ExperimentId;
 use crate::record::baseline::Comparison;
-use crate::record::{Record, Results, SCHEMA, Spent, Timing, version1};
+use crate::record::{Record, Results, SCHEMA, Spent, Timing};
 use crate::report::{Artifact, ReportError};
 
 /// Returns the record as one JSON object.
@@ -64,8 +64,8 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum UnreadableRecord {
-    /// The version of the format is unknown.
-    #[error("a record of form {found}, this program reads 1 and {SCHEMA}")]
+    /// Another version of the format.
+    #[error("a record of form {found}, this program reads {SCHEMA}")]
     Schema {
         /// Version of the text.
         found: u64,
@@ -75,22 +75,19 @@ pub enum UnreadableRecord {
     Broken(#[from] serde_json::Error),
 }
 
-/// Reads a record of this version, or of version 1.
+/// Reads a record.
 ///
 /// # Errors
 ///
-/// The text is of a later version, or not a record.
+/// The text is of another version, or not a record.
 pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
-    // Through one tree for both versions: the reader of a tree of types is compiled anew for each source.
     let tree: Value = serde_json::from_slice(text)?;
     // The version is read first: everything else depends on it.
     let schema = tree.get("schema").ok_or_else(|| serde_json::Error::missing_field("schema"))?;
     let found = u64::deserialize(schema)?;
-    let tree = match found {
-        1 => version1::upgraded(tree),
-        _ if found == u64::from(SCHEMA) => tree,
-        _ => return Err(UnreadableRecord::Schema { found }),
-    };
+    if found != u64::from(SCHEMA) {
+        return Err(UnreadableRecord::Schema { found });
+    }
     let document: Document<Results> = serde_json::from_value(tree)?;
     let Document { mut results, timing, comparison, .. } = document;
     let times: BTreeMap<ExperimentId, Spent> = timing
@@ -101,9 +98,6 @@ pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
     for case in &mut results.cases {
         for experiment in &mut case.experiments {
             experiment.spent = times.get(&experiment.id).copied().unwrap_or_default();
-        }
-        if found == 1 {
-            case.name_experiments();
         }
     }
     Ok(Record { results, timing: timing.run, comparison })

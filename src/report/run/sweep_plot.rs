@@ -112,7 +112,7 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
 
 /// Returns the meaning of S and n.
 fn setup_note(case: &CaseRecord) -> String {
-    let draws = counted(case.draws_per_ray.unwrap_or(1), "draw");
+    let draws = counted(case.draws_per_ray, "draw");
     format!(
         "(c): S lookups before the first draw of a ray, shared by its n = {draws} (draws_per_ray of the case)"
     )

@@ -233,14 +233,14 @@ fn what_is_no_baseline_is_an_error_with_its_cure() {
     let path = folder.path().join("x.json");
     let read = || Baseline::read(&path).expect_err("an error");
     assert!(matches!(read(), BaselineError::Missing(_)));
-    for text in ["", "no json", "{}", "[]", "{\"schema\": 2, \"seeds\": [1]}"] {
+    for text in ["", "no json", "{}", "[]", "{\"schema\": 1, \"seeds\": [1]}"] {
         std::fs::write(&path, text).expect("written");
         assert!(matches!(read(), BaselineError::Broken { .. }), "{text}");
     }
     let whole = serde_json::to_string(&baseline(1)).expect("JSON");
     std::fs::write(&path, &whole[..whole.len() / 2]).expect("written");
     assert!(matches!(read(), BaselineError::Broken { .. }));
-    std::fs::write(&path, whole.replace("\"schema\":2", "\"schema\":9")).expect("written");
+    std::fs::write(&path, whole.replace("\"schema\":1", "\"schema\":9")).expect("written");
     assert!(matches!(read(), BaselineError::Schema { found: 9, .. }));
     assert!(read().to_string().contains("--save-baseline"));
     for name in ["", "a/b", "..", ".x", "a b"] {

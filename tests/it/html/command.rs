@@ -47,9 +47,8 @@ fn what_is_no_record_is_named_with_its_cure() {
     for (text, words) in [
         ("", "not a record, or a broken one"),
         ("{\"schema\": 1, \"results\": {", "not a record, or a broken one"),
-        ("{\"schema\": 2}", "missing field `results`"),
-        ("{\"schema\": 1}", "not a record, or a broken one"),
-        ("{\"schema\": 99, \"results\": 3}", "a record of form 99, this program reads 1 and 2"),
+        ("{\"schema\": 1}", "missing field `results`"),
+        ("{\"schema\": 99, \"results\": 3}", "a record of form 99, this program reads 1"),
     ] {
         fs::write(&path, text).expect("writes");
         refused(words);

@@ -174,31 +174,6 @@ fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
 }
 
 #[test]
-fn a_record_without_paths_and_fields_has_a_page() {
-    let record = record();
-    let mut json: serde_json::Value =
-        serde_json::from_str(&record_json::text(&record).expect("renders")).expect("is JSON");
-    let cases = json["results"]["cases"].as_array_mut().expect("cases");
-    let experiments = cases.iter_mut();
-    let experiments =
-        experiments.flat_map(|case| case["experiments"].as_array_mut().expect("experiments"));
-    for experiment in experiments {
-        let experiment = experiment.as_object_mut().expect("an experiment");
-        experiment.remove("courses");
-        for finding in experiment["findings"].as_array_mut().expect("findings") {
-            finding.as_object_mut().expect("a finding").remove("path");
-        }
-    }
-    let old = record_json::read(json.to_string().as_bytes()).expect("reads");
-    let html = text(&old);
-    assert_whole(&html, &old);
-    assert!(
-        !html.contains("<figure class=\"spark\">")
-            && text(&record).contains("<figure class=\"spark\">")
-    );
-}
-
-#[test]
 fn small_plots_show_ln_e_beside_its_limit_and_where_an_inequality_fails() {
     let elements = elements(&text(&record()));
     let figures = all(&elements, "figure");

@@ -129,7 +129,7 @@ pub fn flips(place: &mut Place, tries: usize) -> Counts {
 /// Resumes from journals of other draws, and from files that are not journals.
 pub fn strangers(place: &mut Place) -> Counts {
     let (mut counts, journal) = (Counts::default(), place.journal());
-    for bytes in [&b""[..], b"trueflight", b"trueflight blocks 4\n", &[0; 4096]] {
+    for bytes in [&b""[..], b"trueflight", b"trueflight blocks 1\n", &[0; 4096]] {
         resume_with(place, &mut counts, bytes, FOREIGN);
     }
     // Blocks behind the header of other draws: they have other keys.

@@ -32,8 +32,8 @@ from pathlib import Path
 
 import trueflight
 
-# The versions of `truth.json` that are read, without and with channels, and exit codes, the worst last.
-VERSIONS = (1, 2)
+# Version of `truth.json`, and exit codes, the worst last.
+VERSION = 1
 CODES = {"pass": 0, "inconclusive": 3, "fail": 1}
 INTERRUPTED = 130
 
@@ -109,9 +109,8 @@ def read(folder):
         raise Wrong(f"{path}: {error.strerror}; write it by `trueflight export --to mitsuba`") from None
     except ValueError as error:
         raise Wrong(f"{path}: {error}; write it anew by `trueflight export`") from None
-    if truth.get("version") not in VERSIONS or truth.get("target") != "mitsuba":
-        versions = " or ".join(map(str, VERSIONS))
-        raise Wrong(f"{path} is not for Mitsuba, or not of version {versions}; export it anew")
+    if truth.get("version") != VERSION or truth.get("target") != "mitsuba":
+        raise Wrong(f"{path} is not for Mitsuba, or not of version {VERSION}; export it anew")
     return truth
 
 

@@ -78,7 +78,7 @@ pub struct GateFinding {
     pub ln_p_limit: f64,
     /// Number of draws that the test needs, where more than were planned; infinite where no number suffices. `None`
     /// where the plan suffices.
-    #[cfg_attr(feature = "serde", serde(default, with = "crate::extended"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub needed: Option<f64>,
     /// True if it was decided.
     pub is_decided: bool,
