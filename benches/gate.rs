@@ -20,6 +20,7 @@
 use std::hint::black_box;
 
 use cpu_time::{ProcessTime, ThreadTime};
+use gate::stats::verdict::BLOCK;
 use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::draw::block;
@@ -28,7 +29,7 @@ use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::plan::{BLOCK, Planned};
+use trueflight::plan::Planned;
 
 /// Draws per experiment.
 const DRAWS: u64 = 2 * BLOCK;

@@ -13,12 +13,13 @@ use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use gate::stats::verdict::BLOCK;
 use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::plan::{BLOCK, Planned};
+use trueflight::plan::Planned;
 
 /// Number of threads.
 const THREADS: usize = 2;

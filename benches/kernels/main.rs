@@ -9,6 +9,7 @@ mod textbook;
 
 use cpu_time::ThreadTime;
 use fearless_simd::Level;
+use gate::stats::verdict::BLOCK;
 use rand_pcg::Pcg64;
 use trueflight::case::Case;
 use trueflight::case::Source;
@@ -16,7 +17,7 @@ use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::plan::{BLOCK, Planned};
+use trueflight::plan::Planned;
 
 /// Number of rounds; the median counts.
 const ROUNDS: usize = 7;
