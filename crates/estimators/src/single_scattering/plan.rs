@@ -7,6 +7,7 @@ use fearless_simd::Level;
 use super::ground::Ground;
 use super::interactions::Interactions;
 use super::main_part::{self, MainPart};
+use super::shadow::require_shadow;
 use super::shared::Shared;
 use super::vertices::{Right, ToVertices, WalkEvents};
 use crate::setup::Residual;
@@ -16,7 +17,6 @@ use crate::walks::{self, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
 use media::catalogue::Settings;
 use media::{Control, Lookups};
-use numeric::digits::{number, rounded};
 use numeric::geometry::Bounds;
 use numeric::rng::Stream;
 use theory::Prediction;
@@ -473,29 +473,4 @@ impl<P: Planned> Estimator<SingleScattering> for ByPlan<P> {
     fn fill(&self, kernel: Kernel, setup: &Setup<SingleScattering>, request: Request) {
         self.0.fill(kernel, setup, request);
     }
-}
-
-/// Checks delta tracking of shadow rays: it needs a majorant on every ray, and its walks must end.
-///
-/// # Errors
-///
-/// The bound on σ_t that the majorant does not reach, or the expected number of collisions.
-fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
-    if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
-        let collisions = sampling * setup.fields.mesh.support().length();
-        if collisions.is_nan() || collisions > 1e6 {
-            let needs = "a shadow's σ̂ of at most 1e6 collisions on the ray's length";
-            return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
-        }
-    }
-    let Tracking::Delta { sampling } = shadow else { return Ok(()) };
-    let bound = setup.problem.shadow_majorant();
-    if sampling >= bound * (1.0 - 1e-12) {
-        return Ok(());
-    }
-    let needs = "σ̄ ≥ σ_t on every shadow ray";
-    Err(Refusal::mismatch(
-        needs,
-        format!("σ̄ = {} and σ_t is bounded by {} only", number(sampling), rounded(bound)),
-    ))
 }

@@ -7,9 +7,12 @@
 use super::ground::Ground;
 use crate::space::shadow::{Light, Shadows};
 use crate::walks::TentativeCollision;
+use crate::{Refusal, Setup};
+use numeric::digits::{number, rounded};
 use numeric::geometry::exit;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Mask, kept};
+use theory::problems::SingleScattering;
 use theory::single::Tracking;
 
 /// The number of lanes of a pack that cast their shadow rays together.
@@ -122,4 +125,29 @@ impl<L: Lane> ToLight<L> {
         self.lit = none;
         (lit, self.light)
     }
+}
+
+/// Checks delta tracking of shadow rays: it needs a majorant on every ray, and its walks must end.
+///
+/// # Errors
+///
+/// The bound on σ_t that the majorant does not reach, or the expected number of collisions.
+pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
+    if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
+        let collisions = sampling * setup.fields.mesh.support().length();
+        if collisions.is_nan() || collisions > 1e6 {
+            let needs = "a shadow's σ̂ of at most 1e6 collisions on the ray's length";
+            return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
+        }
+    }
+    let Tracking::Delta { sampling } = shadow else { return Ok(()) };
+    let bound = setup.problem.shadow_majorant();
+    if sampling >= bound * (1.0 - 1e-12) {
+        return Ok(());
+    }
+    let needs = "σ̄ ≥ σ_t on every shadow ray";
+    Err(Refusal::mismatch(
+        needs,
+        format!("σ̄ = {} and σ_t is bounded by {} only", number(sampling), rounded(bound)),
+    ))
 }
