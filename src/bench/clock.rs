@@ -4,12 +4,12 @@
 //! way is charged for memory that is read or mapped for the first time. Every other round takes the ways in reverse
 //! order, so that no way always comes second.
 
-use gate::stats::verdict::BLOCK;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
 use fearless_simd::Level;
+use gate::stats::verdict::BLOCK;
 use serde::{Deserialize, Serialize};
 
 use super::curve::Sample;

@@ -1,10 +1,10 @@
 //! Numbers that options take, and messages about wrong ones.
 
-use gate::stats::verdict::BLOCK;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
+use gate::stats::verdict::BLOCK;
 use numeric::digits::short;
 
 /// Returns a parser of whole numbers of a range.
