@@ -12,6 +12,7 @@ use crate::stats::replays::{Replays, Runs};
 use crate::stats::sequences::Sequences;
 use crate::stats::verdict::{MISS, Verdict};
 use crate::stats::{Powers, ties};
+use numeric::fused::{self, Loop};
 use numeric::sum::Sum;
 
 /// Minimum number of draws that are judged at a time.
@@ -143,18 +144,26 @@ impl Reading {
         self.mean.iter_mut().chain(&mut self.variance).chain(&mut self.lookups)
     }
 
-    /// Kind of the error of a draw by itself.
-    fn fault(&self, x: f64) -> Option<InvalidDraw> {
+    /// Kind of the error of a draw that is not sound by itself.
+    fn fault(&self, x: f64) -> InvalidDraw {
         let claim = &self.trial.claim;
-        let y = (x - claim.truth) / claim.unit;
-        if zero_or_nan(y) != 0.0 {
-            return Some(InvalidDraw::Number);
+        if zero_or_nan((x - claim.truth) / claim.unit) != 0.0 {
+            InvalidDraw::Number
+        } else if claim.flights.is_some() && x < 0.0 {
+            InvalidDraw::Distance
+        } else {
+            InvalidDraw::Range
         }
-        if claim.flights.is_some() && x < 0.0 {
-            return Some(InvalidDraw::Distance);
-        }
-        let [low, high] = self.range?;
-        (!(low <= x && x <= high)).then_some(InvalidDraw::Range)
+    }
+
+    /// Searches for draws that are no numbers, or outside the range.
+    fn look_at_values(&mut self, block: &[f64]) {
+        let claim = &self.trial.claim;
+        let (truth, unit) = (claim.truth, claim.unit);
+        let [low, high] = self.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let low = if claim.flights.is_some() { low.max(0.0) } else { low };
+        let is_sound = |x: f64| (zero_or_nan((x - truth) / unit) == 0.0) & (low <= x) & (x <= high);
+        self.note(self.read, block, is_sound, Self::fault);
     }
 
     /// Adds draws with their lookups, if there are any.
@@ -202,13 +211,12 @@ impl Reading {
         }
         self.steps.absorb(block);
         self.is_single &= ties::all_single_precision(block);
-        let first = self.read;
-        self.note(first, block, Self::fault);
+        self.look_at_values(block);
         if let Some(claimed) = self.trial.claim.lookups {
             // A predicted number may be rounded; a draw that differs by one is far beyond that.
-            let is_other = |m: f64| claimed.is_fixed() && (m - claimed.mean).abs() > 0.5;
-            let fault = |m: f64| (!m.is_finite() || is_other(m)).then_some(InvalidDraw::Lookups);
-            self.note(first, lookups, |_, m| fault(m));
+            let reach = if claimed.is_fixed() { 0.5 } else { f64::INFINITY };
+            let is_sound = |m: f64| m.is_finite() & ((m - claimed.mean).abs() <= reach);
+            self.note(self.read, lookups, is_sound, |_, _| InvalidDraw::Lookups);
         }
     }
 
@@ -217,10 +225,14 @@ impl Reading {
         &mut self,
         first: u64,
         values: &[f64],
-        fault: impl Fn(&Self, f64) -> Option<InvalidDraw>,
+        is_sound: impl Fn(f64) -> bool,
+        fault: impl Fn(&Self, f64) -> InvalidDraw,
     ) {
-        for (index, &value) in (first..).zip(values) {
-            let Some(fault) = fault(self, value) else { continue };
+        if are_all(values, &is_sound) {
+            return;
+        }
+        for (index, &value) in (first..).zip(values).filter(|(_, value)| !is_sound(**value)) {
+            let fault = fault(self, value);
             self.refuting += 1;
             if self.refuted.is_none_or(|earlier| index < earlier.index) {
                 self.refuted = Some(Refuted { fault, index, value });
@@ -236,19 +248,23 @@ impl Reading {
         self.y.clear();
         self.y.extend(block.iter().map(|x| (x - truth) / unit));
         let bound = if self.mean.is_none() { self.trial.bound() } else { f64::INFINITY };
-        let fault = |y: f64| {
-            let number = (zero_or_nan(y) != 0.0).then_some(InvalidDraw::Number);
-            number.or((y.abs() > bound).then_some(InvalidDraw::Spread))
-        };
+        let is_number = |y: f64| zero_or_nan(y) == 0.0;
+        let is_sound = |y: f64| is_number(y) & (y.abs() <= bound);
         let mut is_finite = true;
-        for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
-            let Some(fault) = fault(y) else { continue };
-            is_finite &= fault != InvalidDraw::Number;
-            // The first look reports draws that are not numbers.
-            if fault == InvalidDraw::Spread || batch > 1 {
-                self.refuting += 1;
-                let index = at * batch;
-                self.refuted = self.refuted.or(Some(Refuted { fault, index, value }));
+        if !are_all(&self.y, is_sound) {
+            for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
+                if is_sound(y) {
+                    continue;
+                }
+                is_finite &= is_number(y);
+                // The first look reports draws that are not numbers.
+                if is_number(y) || batch > 1 {
+                    let fault =
+                        if is_number(y) { InvalidDraw::Spread } else { InvalidDraw::Number };
+                    self.refuting += 1;
+                    let index = at * batch;
+                    self.refuted = self.refuted.or(Some(Refuted { fault, index, value }));
+                }
             }
         }
         self.judged += block.len() as u64;
@@ -355,6 +371,24 @@ impl Reading {
         judgement.guarantees.extend(notes);
         judgement
     }
+}
+
+/// Returns true if a condition holds for all numbers. The loop has no early exit, so that it is compiled for wide registers.
+fn are_all(values: &[f64], is_sound: impl Fn(f64) -> bool) -> bool {
+    struct Unsound<'a, F> {
+        values: &'a [f64],
+        is_sound: F,
+        count: &'a mut u64,
+    }
+    impl<F: Fn(f64) -> bool> Loop for Unsound<'_, F> {
+        #[inline(always)]
+        fn run(self) {
+            *self.count = self.values.iter().map(|&x| u64::from(!(self.is_sound)(x))).sum();
+        }
+    }
+    let mut count = 0;
+    fused::run(Unsound { values, is_sound, count: &mut count });
+    count == 0
 }
 
 /// Returns 0 for numbers with a finite square, and NaN otherwise.

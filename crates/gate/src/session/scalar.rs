@@ -171,8 +171,8 @@ impl Scalar {
                 ground.absorb(y, aim, self.quantity.floor);
             }
         }
-        self.past.absorb(y);
-        self.sums.push((y.iter().sum(), self.past.draws()));
+        let sum = self.past.absorb(y);
+        self.sums.push((sum, self.past.draws()));
         if block + 1 == self.look {
             self.decide();
             self.look = gate::next_look(self.look);

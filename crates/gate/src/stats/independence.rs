@@ -43,6 +43,8 @@ pub struct Independence {
     /// The length of a whole block; later blocks of another length are not summed further.
     length: usize,
     sums: Vec<f64>,
+    /// Differences of draws that are D apart.
+    apart: Vec<f64>,
 }
 
 /// Signs of one lag or scale.
@@ -71,8 +73,10 @@ impl Signs {
     /// Adds the sign of ab.
     #[inline(always)]
     pub fn add(&mut self, a: f64, b: f64) {
-        self.positive += u64::from(a > 0.0 && b > 0.0) + u64::from(a < 0.0 && b < 0.0);
-        self.negative += u64::from(a > 0.0 && b < 0.0) + u64::from(a < 0.0 && b > 0.0);
+        // No branches: a processor cannot predict signs.
+        let (up, down) = ([a > 0.0, b > 0.0], [a < 0.0, b < 0.0]);
+        self.positive += u64::from(up[0] & up[1] | down[0] & down[1]);
+        self.negative += u64::from(up[0] & down[1] | down[0] & up[1]);
         self.products += a * b;
         self.squares += a * a + b * b;
     }
@@ -89,19 +93,27 @@ impl Signs {
         if self.squares > 0.0 { 2.0 * self.products / self.squares } else { 0.0 }
     }
 
-    /// All foursomes of a lag.
+    /// All foursomes of a lag: two differences `LAG` apart, each difference in one foursome.
     #[inline(always)]
-    fn add_all(&mut self, x: &[f64], lag: usize, distance: usize, reach: usize) {
-        let mut found = Self::default();
-        for first in (0..reach).step_by(2 * lag) {
-            for i in first..(first + lag).min(reach.saturating_sub(lag)) {
-                found.add(x[i] - x[i + distance], x[i + lag] - x[i + lag + distance]);
+    fn add_all<const LAG: usize>(&mut self, differences: &[f64]) {
+        let mut lanes = [Self::default(); LAG];
+        let mut pairs = differences.chunks_exact(2 * LAG);
+        for pair in &mut pairs {
+            let (first, second) = pair.split_at(LAG);
+            for lane in 0..LAG {
+                lanes[lane].add(first[lane], second[lane]);
             }
         }
-        self.positive += found.positive;
-        self.negative += found.negative;
-        self.products += found.products;
-        self.squares += found.squares;
+        let (first, second) = pairs.remainder().split_at(pairs.remainder().len().min(LAG));
+        for (signs, (&a, &b)) in lanes.iter_mut().zip(first.iter().zip(second)) {
+            signs.add(a, b);
+        }
+        for signs in lanes {
+            self.positive += signs.positive;
+            self.negative += signs.negative;
+            self.products += signs.products;
+            self.squares += signs.squares;
+        }
     }
 }
 
@@ -114,16 +126,29 @@ impl Default for Independence {
             blocks: 0,
             length: 0,
             sums: Vec::new(),
+            apart: Vec::new(),
         }
     }
 }
 
-/// Length of the range of the first pairs, and distance D of the second ones from them.
-fn layout(length: usize, block: u64) -> (usize, usize) {
-    let reach = length * 7 / 16;
+/// The differences of draws that are D apart.
+#[inline(always)]
+fn differences(x: &[f64], block: u64, apart: &mut Vec<f64>) {
+    let reach = x.len() * 7 / 16;
     // A multiplicative hash: no period of the draws is that of D.
     let spread = (block.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) as usize;
-    (reach, reach + spread % (length - 2 * reach).max(1))
+    let distance = reach + spread % (x.len() - 2 * reach).max(1);
+    apart.clear();
+    apart.extend(x[..reach].iter().zip(&x[distance..]).map(|(near, far)| near - far));
+}
+
+/// Adds the foursomes of all lags.
+#[inline(always)]
+fn add_lags(lags: &mut [Signs; LAGS], apart: &[f64]) {
+    macro_rules! add {
+        ($($lag:literal)*) => { $(lags[$lag - 1].add_all::<$lag>(apart);)* };
+    }
+    add!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
 }
 
 impl Independence {
@@ -135,15 +160,14 @@ impl Independence {
             self.length = x.len();
         }
         let is_whole = x.len() == self.length && x.len().is_power_of_two();
-        let mut sums = std::mem::take(&mut self.sums);
+        let (mut sums, mut apart) =
+            (std::mem::take(&mut self.sums), std::mem::take(&mut self.apart));
         in_fused_code(
             #[inline(always)]
             || {
                 if x.len() >= FEWEST && (block < ALL || block.is_multiple_of(4)) {
-                    let (reach, distance) = layout(x.len(), block);
-                    for (lag, signs) in self.lags.iter_mut().enumerate() {
-                        signs.add_all(x, lag + 1, distance, reach);
-                    }
+                    differences(x, block, &mut apart);
+                    add_lags(&mut self.lags, &apart);
                 }
                 sums.clear();
                 sums.extend(x.as_chunks::<2>().0.iter().map(|[a, b]| a + b));
@@ -152,8 +176,8 @@ impl Independence {
         let mut scale = 0;
         while sums.len() > 1 && scale < SCALES {
             if sums.len() >= FEWEST {
-                let (reach, distance) = layout(sums.len(), block);
-                self.scales[scale].add_all(&sums, 1, distance, reach);
+                differences(&sums, block, &mut apart);
+                self.scales[scale].add_all::<1>(&apart);
             } else if let [a, b, c, d] = sums[..] {
                 self.scales[scale].add(a - c, b - d);
             }
@@ -167,7 +191,7 @@ impl Independence {
         if let (true, [whole]) = (is_whole, &sums[..]) {
             self.pass_on(scale, *whole);
         }
-        self.sums = sums;
+        (self.sums, self.apart) = (sums, apart);
     }
 
     /// Adds the sum of a whole block to those of the blocks before.

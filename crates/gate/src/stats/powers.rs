@@ -1,5 +1,6 @@
 //! Sums of powers of draws: their mean, variance and tails.
 
+use numeric::fused::{self, Loop};
 use numeric::sum::Sum;
 
 /// Number of independent partial sums, so that additions do not depend on each other.
@@ -15,22 +16,15 @@ pub struct Powers {
 }
 
 impl Powers {
-    /// Adds a block.
-    pub fn absorb(&mut self, y: &[f64]) {
+    /// Adds a block, and returns the sum of its draws.
+    pub fn absorb(&mut self, y: &[f64]) -> f64 {
         let mut lanes = [[0.0; LANES]; 4];
-        let (rows, rest) = y.as_chunks::<LANES>();
-        for row in rows {
-            for (lane, &y) in row.iter().enumerate() {
-                add(&mut lanes, lane, y);
-            }
-        }
-        for (lane, &y) in rest.iter().enumerate() {
-            add(&mut lanes, lane, y);
-        }
+        fused::run(Rows { lanes: &mut lanes, y });
         for (sum, lanes) in self.sums.iter_mut().zip(&lanes) {
             sum.add(lanes.iter().sum());
         }
         self.draws += y.len() as u64;
+        lanes[0].iter().sum()
     }
 
     /// Adds the sums of later draws.
@@ -86,13 +80,35 @@ impl Powers {
     }
 }
 
-#[inline(always)]
-fn add(lanes: &mut [[f64; LANES]; 4], lane: usize, y: f64) {
-    let square = y * y;
-    lanes[0][lane] += y;
-    lanes[1][lane] += square;
-    lanes[2][lane] += square * y;
-    lanes[3][lane] += square * square;
+/// Powers of draws, added lane by lane.
+struct Rows<'a> {
+    lanes: &'a mut [[f64; LANES]; 4],
+    y: &'a [f64],
+}
+
+impl Loop for Rows<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let (rows, rest) = self.y.as_chunks::<LANES>();
+        // An array of its own for each power: the compiler keeps each in registers.
+        let [mut first, mut second, mut third, mut fourth] = *self.lanes;
+        let mut add = |lane: usize, y: f64| {
+            let square = y * y;
+            first[lane] += y;
+            second[lane] += square;
+            third[lane] += square * y;
+            fourth[lane] += square * square;
+        };
+        for row in rows {
+            for lane in 0..LANES {
+                add(lane, row[lane]);
+            }
+        }
+        for (lane, &y) in rest.iter().enumerate() {
+            add(lane, y);
+        }
+        *self.lanes = [first, second, third, fourth];
+    }
 }
 
 #[cfg(test)]
@@ -105,7 +121,7 @@ mod tests {
         let values: Vec<f64> = (0..1000).map(|i| f64::from(i) - 499.5).collect();
         for halves in values.chunks(154) {
             let mut both = Powers::default();
-            halves.chunks(77).for_each(|block| both.absorb(block));
+            halves.chunks(77).for_each(|block| _ = both.absorb(block));
             powers.merge(&both);
         }
         assert_eq!(powers.draws(), 1000);

@@ -71,18 +71,24 @@ impl Hasher for Spread {
 impl Replays {
     /// Adds draws that follow the last ones.
     pub fn absorb(&mut self, x: &[f64]) {
-        for x in x {
+        for (place, x) in (self.draws..).zip(x) {
             let bits = x.to_bits();
             // Zero is the commonest atom, and its hash would be kept for ever.
-            if *x != 0.0 && hash(bits).leading_zeros() >= self.bits {
-                self.kept.push((bits, self.draws));
-                if self.kept.len() >= MAX_ENTRIES {
-                    self.bits += 1;
-                    let least = self.bits;
-                    self.kept.retain(|(bits, _)| hash(*bits).leading_zeros() >= least);
-                }
+            if hash(bits).leading_zeros() >= self.bits && *x != 0.0 {
+                self.keep(bits, place);
             }
-            self.draws += 1;
+        }
+        self.draws += x.len() as u64;
+    }
+
+    /// Keeps a draw, and thins what is kept where that is too much.
+    #[cold]
+    fn keep(&mut self, bits: u64, place: u64) {
+        self.kept.push((bits, place));
+        if self.kept.len() >= MAX_ENTRIES {
+            self.bits += 1;
+            let least = self.bits;
+            self.kept.retain(|(bits, _)| hash(*bits).leading_zeros() >= least);
         }
     }
 
