@@ -221,7 +221,7 @@ impl Timer {
         let (at, pilots) = (case.at(place).ok()?, case.pilots(1, estimator));
         let prediction = at.predict(estimator, None, pilots)?;
         let mut timer = Self {
-            experiment: at.experiment(estimator, pilots).ok()?,
+            experiment: at.join(estimator, pilots).ok()?,
             streams: case.address(1, estimator, place).streams(),
             buffer: DrawBuffer::new(prediction.channels.len()),
             fills: 1,

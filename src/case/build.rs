@@ -6,12 +6,11 @@ use std::sync::Arc;
 
 use crate::case::estimator::{Defaults, Estimators};
 use estimators::setup::{FAINTEST, Parts};
-use estimators::trial::Entry;
-use estimators::{Estimated, Experiment, Fields, RayView, Refusal, Setup};
+use estimators::trial::{Entry, Joined};
+use estimators::{Estimated, Experiment, Fields, Refusal, Setup};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Medium};
-use numeric::rng::Address;
 use theory::Prediction;
 use theory::problems::options::chosen;
 use theory::problems::{self, ProblemOption, each_problem};
@@ -86,56 +85,14 @@ pub trait AnyProblem: Send + Sync {
     /// Returns whether an estimator, or the problem itself, depends on an albedo.
     fn has_albedo(&self, estimator: usize) -> bool;
 
-    /// Requires parts that fit together.
-    fn fit(&self, estimator: usize, parts: Parts) -> Result<(), Refusal>;
-
-    /// Prepares an experiment with its prediction; a `forced` one is drawn outside its domain, too.
-    fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal>;
-
-    /// Prepares the draws of an experiment, which may be outside its domain.
-    fn experiment(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Experiment>, Refusal>;
-
-    /// Predicts an experiment, without distributions; `None` if it is refused.
-    fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction>;
-
-    /// Returns the ray seen from the side, for estimators of a curve.
-    fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
-
-    /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
-    fn setup(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Any>, Refusal>;
+    /// Joins an estimator with its setup, at the swept albedo where it has one.
+    fn join(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Joined>, Refusal>;
 }
 
 /// A problem of known type with its estimators.
 struct Typed<P> {
     problem: Arc<P>,
     entries: Vec<Box<dyn Entry<P>>>,
-}
-
-impl<P: Estimated> Typed<P> {
-    fn joined(&self, estimator: usize, parts: Parts) -> Result<Setup<P>, Refusal> {
-        let entry = &self.entries[estimator];
-        let mut setup = Setup::new(&self.problem, parts)?;
-        if entry.skips() {
-            setup.fields = setup.fields.skipping();
-        }
-        // Without collisions a draw does not begin with the weight T_c.
-        if entry.inputs().sampling {
-            setup.fields.require_weights()?;
-        }
-        Ok(setup)
-    }
-
-    /// Calls `f` with an estimator, at the swept albedo where it has one.
-    fn with_entry<T>(
-        &self,
-        estimator: usize,
-        albedo: Option<f64>,
-        f: impl FnOnce(&dyn Entry<P>) -> T,
-    ) -> T {
-        let own = &self.entries[estimator];
-        let varied = albedo.and_then(|albedo| own.with_albedo(albedo));
-        f(varied.as_deref().unwrap_or(&**own))
-    }
 }
 
 impl<P: Estimated> AnyProblem for Typed<P> {
@@ -152,50 +109,19 @@ impl<P: Estimated> AnyProblem for Typed<P> {
     }
 
     fn has_albedo(&self, estimator: usize) -> bool {
-        let entry = &self.entries[estimator];
-        entry.with_albedo(0.5).is_some() || self.problem.with_albedo(0.5).is_some()
+        let own = self.entries[estimator].traits().albedo;
+        own.is_some() || self.problem.with_albedo(0.5).is_some()
     }
 
-    fn fit(&self, estimator: usize, parts: Parts) -> Result<(), Refusal> {
-        self.joined(estimator, parts).map(drop)
-    }
-
-    fn prepare(&self, estimator: usize, parts: Parts, forced: bool) -> Result<Ready, Refusal> {
-        let albedo = parts.albedo;
-        let setup = self.joined(estimator, parts)?;
-        self.with_entry(estimator, albedo, |entry| {
-            let prediction = match entry.domain(&setup) {
-                Ok(()) => entry.predict(&setup),
-                // Forced: outside the domain the formulas do not hold, only the truth does.
-                Err(_) if forced => entry.predict(&setup).only_the_truth(),
-                Err(refusal) => return Err(refusal),
-            };
-            Ok(Ready { experiment: entry.experiment(setup), prediction })
-        })
-    }
-
-    fn experiment(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Experiment>, Refusal> {
-        let albedo = parts.albedo;
-        let setup = self.joined(estimator, parts)?;
-        Ok(self.with_entry(estimator, albedo, |entry| entry.experiment(setup)))
-    }
-
-    fn predict(&self, estimator: usize, parts: Parts) -> Option<Prediction> {
-        let albedo = parts.albedo;
-        let setup = Setup { distributions: false, ..self.joined(estimator, parts).ok()? };
-        self.with_entry(estimator, albedo, |entry| {
-            entry.domain(&setup).ok()?;
-            Some(entry.predict(&setup))
-        })
-    }
-
-    fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView> {
-        let setup = self.joined(estimator, parts).ok()?;
-        self.entries[estimator].ray_view(&setup, address)
-    }
-
-    fn setup(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Any>, Refusal> {
-        Ok(Box::new(self.joined(estimator, parts)?))
+    fn join(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Joined>, Refusal> {
+        let own = &self.entries[estimator];
+        let varied = parts.albedo.and_then(|albedo| own.with_albedo(albedo));
+        let setup = Setup::new(&self.problem, parts)?;
+        // Without collisions a draw does not begin with the weight T_c.
+        if own.traits().inputs.sampling {
+            setup.fields.require_weights()?;
+        }
+        Ok(varied.as_ref().unwrap_or(own).join(setup))
     }
 }
 

@@ -7,46 +7,17 @@ use estimators::own::EstimatorReader;
 use estimators::recipes::sampling::spectral::Spectral;
 use estimators::recipes::{controls, sampling};
 use estimators::trial::Entry;
-use estimators::{Estimated, Inputs};
+use estimators::{Estimated, Traits};
 use media::Body;
 use media::catalogue::{Page, Settings, Value};
 use theory::problems::ProblemOption;
-
-/// Properties of an estimator that do not depend on its problem.
-pub struct Features {
-    /// Inputs that it takes.
-    pub inputs: Inputs,
-    /// Inputs that it takes with some settings.
-    pub may_take: Inputs,
-    /// The estimator that it is by definition without a control.
-    pub alias: Option<&'static str>,
-    /// The control that it uses where the case gives none.
-    pub default_control: Option<Box<dyn controls::Recipe>>,
-    /// Knowledge of the medium that the estimator needs beside lookups, σ̂ and control.
-    pub needs: Option<&'static str>,
-    /// Its own settings in words, without the albedo and with it.
-    pub label: [String; 2],
-}
-
-impl Features {
-    fn of<P: Estimated>(entry: &dyn Entry<P>) -> Self {
-        Self {
-            inputs: entry.inputs(),
-            may_take: entry.may_take(),
-            alias: entry.without_control(),
-            default_control: entry.default_control(),
-            needs: entry.needs(),
-            label: [entry.label(false), entry.label(true)],
-        }
-    }
-}
 
 /// An estimator as parsed, apart from its own settings, which the problem keeps.
 pub struct ParsedEstimator {
     /// The name in the catalogue.
     pub name: String,
-    /// Properties of the estimator.
-    pub features: Features,
+    /// Its properties.
+    pub traits: Traits,
     /// Its own σ̂.
     pub sampling: Option<Box<dyn sampling::Recipe>>,
     /// Its own control.
@@ -116,8 +87,7 @@ fn read_sampling(
 impl ParsedEstimator {
     /// Returns a name with the estimator's own settings, as in `single (terminating)`.
     fn label_of(&self, name: &str, albedo: bool) -> EstimatorName {
-        let settings = self.features.label[usize::from(albedo)].clone();
-        EstimatorName { name: name.to_owned(), settings }
+        EstimatorName { name: name.to_owned(), settings: self.traits.label(albedo) }
     }
 
     /// Returns the estimator with its settings; without `albedo` the albedo is left out.
@@ -127,13 +97,13 @@ impl ParsedEstimator {
 
     /// Returns the label under the name of the estimator that it is by definition without a control.
     pub fn alias(&self) -> Option<EstimatorName> {
-        self.features.alias.map(|name| self.label_of(name, true))
+        self.traits.without_control.map(|name| self.label_of(name, true))
     }
 
     /// Reads the common settings of `{ NAME = { …, sampling, control, expect } }`, beside the estimator's own.
     fn read(
         name: &str,
-        features: Option<Features>,
+        traits: Option<Traits>,
         settings: &Settings,
         body: Option<&Body>,
         defaults: Defaults,
@@ -143,7 +113,7 @@ impl ParsedEstimator {
         } else {
             Some(defaults.expect_biased)
         };
-        let Some(features) = features else {
+        let Some(traits) = traits else {
             // The page's mistakes are listed; the inputs that it would have taken are unknown.
             settings.entry("sampling");
             settings.entry("control");
@@ -151,7 +121,7 @@ impl ParsedEstimator {
             return None;
         };
         // Inputs that the page takes with other settings are read, and not used.
-        let Features { inputs, may_take, .. } = features;
+        let Traits { inputs, may_take, .. } = traits;
         let sampling = if may_take.sampling {
             let read = read_sampling(settings, body);
             read.map(|sampling| sampling.filter(|_| inputs.sampling))
@@ -172,7 +142,7 @@ impl ParsedEstimator {
         settings.close();
         Some(Self {
             name: name.to_owned(),
-            features,
+            traits,
             sampling: sampling?,
             control: control?,
             expect_biased: own_expect?,
@@ -188,9 +158,9 @@ struct Offer {
     names: Vec<String>,
 }
 
-/// Reads the own settings of the estimator at a place of an offer, keeps its entry, and returns its features; `None` after
+/// Reads the own settings of the estimator at a place of an offer, keeps its entry, and returns its traits; `None` after
 /// a mistake.
-type Keep<'a> = dyn FnMut(usize, &Settings) -> Option<Features> + 'a;
+type Keep<'a> = dyn FnMut(usize, &Settings) -> Option<Traits> + 'a;
 
 /// Entries of estimators of a problem.
 type Entries<P> = Vec<Box<dyn Entry<P>>>;
@@ -214,9 +184,9 @@ fn reading<P: Estimated, T>(
             None => P::read_estimator(index, settings)?,
             Some(place) => own[place](settings)?,
         };
-        let features = Features::of(&*entry);
+        let traits = entry.traits();
         entries.push(entry);
-        Some(features)
+        Some(traits)
     })?;
     Some((found, entries))
 }
@@ -241,8 +211,8 @@ impl Offer {
         let problem = self.problem.replace('_', "-");
         let explain = |name: &str| explain_estimator(&problem, self.options, name);
         let (index, settings) = table.choice_explained(&self.names, &explain)?;
-        let features = keep(index, &settings);
-        ParsedEstimator::read(&self.names[index], features, &settings, body, defaults)
+        let traits = keep(index, &settings);
+        ParsedEstimator::read(&self.names[index], traits, &settings, body, defaults)
     }
 }
 
@@ -327,7 +297,7 @@ impl Estimators {
         &'a self,
         parsed: &'a ParsedEstimator,
     ) -> Option<&'a dyn sampling::Recipe> {
-        let wanted = parsed.features.inputs.sampling;
+        let wanted = parsed.traits.inputs.sampling;
         wanted.then(|| parsed.sampling.as_deref().or(self.sampling.as_deref())).flatten()
     }
 
@@ -336,21 +306,21 @@ impl Estimators {
         &'a self,
         parsed: &'a ParsedEstimator,
     ) -> Option<&'a dyn controls::Recipe> {
-        let wanted = parsed.features.inputs.control;
+        let wanted = parsed.traits.inputs.control;
         wanted.then(|| parsed.control.as_deref().or(self.control.as_deref())).flatten()
     }
 
     /// Returns the control of an estimator.
     pub fn control_of<'a>(&'a self, parsed: &'a ParsedEstimator) -> &'a dyn controls::Recipe {
-        let default = parsed.features.default_control.as_deref();
-        let default = default.filter(|_| parsed.features.inputs.control);
+        let default = parsed.traits.default_control.as_deref();
+        let default = default.filter(|_| parsed.traits.inputs.control);
         self.given_control(parsed).or(default).unwrap_or(&controls::none::None)
     }
 }
 
 /// Records a mistake for a control, or a sweep of one, that no estimator takes.
 fn refuse_idle_controls(settings: &Settings, estimators: &[ParsedEstimator], swept: Option<What>) {
-    if estimators.is_empty() || estimators.iter().any(|e| e.features.inputs.control) {
+    if estimators.is_empty() || estimators.iter().any(|e| e.traits.inputs.control) {
         return;
     }
     let message = "no estimator of this case takes a control";

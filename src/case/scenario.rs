@@ -1,7 +1,6 @@
 //! Problem with its medium and the estimators of a case; and, at one value of the sweep, the names, predictions and
 //! preparation of its experiments.
 
-use std::any::Any;
 use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
@@ -13,7 +12,8 @@ use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPo
 use crate::case::sweep::{Variation, What};
 use estimators::recipes::{controls, sampling};
 use estimators::setup::Parts;
-use estimators::{Experiment, RayView, Refusal, Site};
+use estimators::trial::Joined;
+use estimators::{RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise, Volume, misses};
@@ -95,7 +95,7 @@ impl Scenario {
     /// Returns whether an estimator depends on a swept quantity.
     pub fn depends_on(&self, estimator: usize, what: What) -> bool {
         let parsed = &self.estimators.list[estimator];
-        let inputs = parsed.features.inputs;
+        let inputs = parsed.traits.inputs;
         match what {
             What::Sampling => inputs.sampling && parsed.sampling.is_none(),
             What::SamplingScale => inputs.sampling,
@@ -180,7 +180,7 @@ impl Scenario {
         };
         let parsed = &self.estimators.list[estimator];
         let recipe = self.estimators.sampling_of(parsed);
-        let constant = constant.filter(|_| parsed.features.inputs.sampling);
+        let constant = constant.filter(|_| parsed.traits.inputs.sampling);
         let constant = constant.map(|value| sampling::constant::Constant { value });
         let is_control_varied = matches!(variation, Some((What::Points | What::Control, _)));
         let is_fixed = constant.is_none()
@@ -218,7 +218,7 @@ impl Scenario {
             Some((What::Albedo, albedo)) => Some(albedo),
             _ => None,
         };
-        Ok((Parts { channels, control, space, albedo }, lookups))
+        Ok((Parts { channels, control, space, albedo, distributions: false }, lookups))
     }
 }
 
@@ -308,77 +308,93 @@ impl<'a> At<'a> {
         let recipe = scenario.estimators.sampling_of(parsed);
         let recipe =
             recipe.filter(|_| !(is_swept && scenario.depends_on(estimator, What::Sampling)));
-        let own = parsed.features.needs.filter(|own| control != Some(own));
+        let own = parsed.traits.needs.filter(|own| control != Some(own));
         let needs = [own, control, recipe.and_then(sampling::Recipe::needs)];
         needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
-    /// Prepares an experiment; pilot rays take their random numbers at `address`.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot be drawn.
-    pub fn prepare(&self, estimator: usize, address: Address) -> Result<Ready, Refusal> {
-        let (scenario, variation) = (self.scenario(), self.variation());
-        let (parts, setup_lookups) = scenario.parts(estimator, variation, None, address)?;
-        let parsed = &scenario.estimators.list[estimator];
-        let mut ready = scenario.problem.prepare(estimator, parts, parsed.expect_biased)?;
-        ready.prediction.setup_lookups = setup_lookups;
-        refuse_what_cannot_be_computed(ready)
-    }
-
-    /// Prepares the draws of an experiment alone, which may be outside its domain: it has no prediction.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot be drawn.
-    pub fn experiment(
+    /// Returns the parts of an experiment, with σ̂ = `what_if` if that is given, and the number of lookups that made them.
+    fn parts(
         &self,
         estimator: usize,
-        address: Address,
-    ) -> Result<Box<dyn Experiment>, Refusal> {
-        let scenario = self.scenario();
-        let (parts, _) = scenario.parts(estimator, self.variation(), None, address)?;
-        scenario.problem.experiment(estimator, parts)
+        what_if: Option<f64>,
+        pilots: Address,
+    ) -> Result<(Parts<'_>, u64), Refusal> {
+        self.scenario().parts(estimator, self.variation(), what_if, pilots)
     }
 
-    /// Predicts an experiment, with σ̂ = `what_if` if that is given; `None` if it is refused.
+    /// Joins an estimator with its setup; pilot rays take their random numbers at `pilots`. Draws outside its domain have no
+    /// prediction.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn join(&self, estimator: usize, pilots: Address) -> Result<Box<dyn Joined>, Refusal> {
+        let (parts, _) = self.parts(estimator, None, pilots)?;
+        self.scenario().problem.join(estimator, parts)
+    }
+
+    /// Prepares an experiment as [`At::join`] does, with its prediction.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn prepare(&self, estimator: usize, pilots: Address) -> Result<Ready, Refusal> {
+        let scenario = self.scenario();
+        let (parts, setup_lookups) = self.parts(estimator, None, pilots)?;
+        let joined = scenario.problem.join(estimator, Parts { distributions: true, ..parts })?;
+        let prediction = match joined.domain() {
+            Ok(()) => joined.predict(),
+            // A declared bias: outside the domain the formulas do not hold, only the truth does.
+            Err(_) if scenario.expects_bias(estimator) => joined.predict().only_the_truth(),
+            Err(refusal) => return Err(refusal),
+        };
+        let prediction = Prediction { setup_lookups, ..prediction };
+        refuse_what_cannot_be_computed(Ready { experiment: joined, prediction })
+    }
+
+    /// Predicts an experiment, with σ̂ = `what_if` if that is given, without distributions; `None` if it is refused.
     pub fn predict(
         &self,
         estimator: usize,
         what_if: Option<f64>,
         pilots: Address,
     ) -> Option<Prediction> {
-        let (scenario, variation) = (self.scenario(), self.variation());
-        let (parts, setup_lookups) = scenario.parts(estimator, variation, what_if, pilots).ok()?;
-        let prediction = scenario.problem.predict(estimator, parts)?;
-        Some(Prediction { setup_lookups, ..prediction })
+        self.predict_by(estimator, self.parts(estimator, what_if, pilots).ok()?)
+    }
+
+    fn predict_by(
+        &self,
+        estimator: usize,
+        (parts, setup_lookups): (Parts, u64),
+    ) -> Option<Prediction> {
+        let joined = self.scenario().problem.join(estimator, parts).ok()?;
+        joined.domain().ok()?;
+        Some(Prediction { setup_lookups, ..joined.predict() })
     }
 
     /// Predicts an experiment as [`At::predict`] does, to a few thousandths, in less time where the medium has many pieces.
     pub fn estimate(&self, estimator: usize, pilots: Address) -> Option<Prediction> {
-        let (scenario, variation) = (self.scenario(), self.variation());
-        let Some(mesh) = scenario.coarse() else { return self.predict(estimator, None, pilots) };
-        let (mut parts, setup_lookups) = scenario.parts(estimator, variation, None, pilots).ok()?;
-        parts.channels[0].0 = mesh.clone();
+        let Some(mesh) = self.scenario().coarse() else {
+            return self.predict(estimator, None, pilots);
+        };
+        let mut parts = self.parts(estimator, None, pilots).ok()?;
+        parts.0.channels[0].0 = mesh.clone();
         // Where the coarse mesh refuses, the fine one decides.
-        let found = scenario.problem.predict(estimator, parts);
+        let found = self.predict_by(estimator, parts);
         let found = found.filter(|found| found.channels[0].resolved_moments().is_some());
-        let found = found.map(|found| Prediction { setup_lookups, ..found });
         found.or_else(|| self.predict(estimator, None, pilots))
     }
 
     /// Returns the control of an experiment; `None` where it cannot be made.
     pub fn control(&self, estimator: usize, pilots: Address) -> Option<Control> {
-        let parts = self.scenario().parts(estimator, self.variation(), None, pilots);
-        parts.ok().map(|(parts, _)| parts.control)
+        self.parts(estimator, None, pilots).ok().map(|(parts, _)| parts.control)
     }
 
     /// Returns the ray seen from the side and the places where the control was fitted, for estimators of a curve.
     pub fn ray_view(&self, estimator: usize, address: Address) -> Option<(RayView, Vec<[f64; 2]>)> {
+        let ray_view = self.join(estimator, address).ok()?.ray_view(address)?;
         let (scenario, variation) = (self.scenario(), self.variation());
-        let parts = scenario.parts(estimator, variation, None, address).ok()?.0;
-        let ray_view = scenario.problem.ray_view(estimator, parts, address)?;
         let site = scenario.site(address);
         let points = scenario.with_control(estimator, variation, |recipe| recipe.points(&site));
         Some((ray_view, points))
@@ -388,9 +404,8 @@ impl<'a> At<'a> {
     /// has no finite value are left out.
     pub fn courses(&self, estimator: usize, address: Address, at: Option<f64>) -> Vec<Course> {
         let scenario = self.scenario();
-        let parts = scenario.parts(estimator, self.variation(), None, address).ok();
-        let parts = parts.map(|(parts, _)| parts);
-        let parts = parts.as_ref();
+        let parts = self.parts(estimator, None, address).ok();
+        let parts = parts.as_ref().map(|(parts, _)| parts);
         let media = scenario.media().iter().enumerate();
         let fields = media.map(|(channel, medium)| Fields {
             medium,
@@ -403,26 +418,13 @@ impl<'a> At<'a> {
     /// Returns the largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
     pub fn natural_scale(&self, estimator: usize) -> f64 {
         let scenario = self.scenario();
-        let Ok((parts, _)) = scenario.parts(estimator, self.variation(), None, NOWHERE) else {
-            return 0.0;
-        };
+        let Ok((parts, _)) = self.parts(estimator, None, NOWHERE) else { return 0.0 };
         let control = parts.control.clone();
-        if scenario.problem.fit(estimator, parts).is_err() {
+        if scenario.problem.join(estimator, parts).is_err() {
             return 0.0;
         }
         let largest = scenario.mesh().largest(&|t, sigma| (sigma - control.extinction(t)).abs());
         largest.map_or(0.0, |(_, size)| size)
-    }
-
-    /// Prepares the `Setup<P>` of an experiment, for draws that are made outside the catalogue.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot be drawn.
-    pub fn setup(&self, estimator: usize, address: Address) -> Result<Box<dyn Any>, Refusal> {
-        let scenario = self.scenario();
-        let (parts, _) = scenario.parts(estimator, self.variation(), None, address)?;
-        scenario.problem.setup(estimator, parts)
     }
 }
 

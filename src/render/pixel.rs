@@ -132,7 +132,7 @@ impl<'a> Pixel<'a> {
             let made = || sampling::in_space(recipe, volume).map(Arc::new);
             listed.space.get_or_init(made).clone()
         });
-        Ok(Parts { channels, control, space, albedo: None })
+        Ok(Parts { channels, control, space, albedo: None, distributions: false })
     }
 
     /// Returns the expected cost and spread of a draw at the covered pixel of a number.
@@ -145,9 +145,11 @@ impl<'a> Pixel<'a> {
         let [column, row] = [self.index % self.view.size[0], self.index / self.view.size[0]];
         let refused = |refusal: Refusal| format!("pixel ({column}, {row}) {refusal}");
         let parts = self.parts(estimators, listed).map_err(refused)?;
-        let ask = [!listed.parsed.expect_biased, self.kind.is_predicted];
-        let prepared = self.ray.prepare(listed.index, parts, ask);
-        let (prediction, experiment) = prepared.map_err(refused)?;
+        let joined = self.ray.join(listed.index, parts).map_err(refused)?;
+        if !listed.parsed.expect_biased {
+            joined.domain().map_err(refused)?;
+        }
+        let prediction = self.kind.is_predicted.then(|| joined.predict());
         let leads = self.leader.is_none();
         let known = prediction.and_then(|found| Some((found.lookups?.mean, found.channels)));
         if let Some((lookups, channels)) = known {
@@ -165,7 +167,7 @@ impl<'a> Pixel<'a> {
         let address = Address { block: number as u64, ..listed.addresses[0] };
         let pixels: usize = self.view.size.iter().map(|size| size.div_ceil(PILOTS_EVERY)).product();
         let draws = MIN_PILOTS.div_ceil(pixels as u64);
-        let lookups = is_pilot.then(|| self.drawn(&*experiment, draws, address).lookups);
+        let lookups = is_pilot.then(|| self.drawn(&*joined, draws, address).lookups);
         let pilots = lookups.unwrap_or(0);
         let lookups = lookups.map(|lookups| lookups as f64 / draws as f64);
         Ok(Forecast { lookups, variance: None, bias: Colour::default(), leads, pilots })
@@ -180,9 +182,9 @@ impl<'a> Pixel<'a> {
         draws: u64,
     ) -> Option<PixelDraws> {
         let parts = self.parts(estimators, listed).ok()?;
-        let prepared = self.ray.prepare(listed.index, parts, [false; 2]);
+        let joined = self.ray.join(listed.index, parts).ok()?;
         let address = Address { block: number as u64, ..listed.addresses[1] };
-        Some(self.drawn(&*prepared.ok()?.1, draws, address))
+        Some(self.drawn(&*joined, draws, address))
     }
 
     fn drawn(&self, experiment: &dyn Experiment, draws: u64, address: Address) -> PixelDraws {

@@ -7,8 +7,8 @@ use super::scene::Reference;
 use super::view::View;
 use crate::case::estimator::{Defaults, Estimators};
 use estimators::setup::Parts;
-use estimators::trial::Entry;
-use estimators::{Estimated, Experiment, Fields, Refusal, Setup};
+use estimators::trial::{Entry, Joined};
+use estimators::{Estimated, Refusal, Setup};
 use media::catalogue::Settings;
 use media::phase::Phase;
 use media::{Body, Medium, Volume};
@@ -22,7 +22,7 @@ use theory::problems::{
     SpectralTransmittance, Transmittance,
 };
 use theory::single::quick;
-use theory::{Mesh, Prediction};
+use theory::Mesh;
 
 /// Problem that pictures show.
 pub trait Subject: Estimated {
@@ -167,14 +167,8 @@ pub trait AnyRay {
     /// Returns [`Subject::by_quadrature`].
     fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>>;
 
-    /// Prepares an estimator of the picture on the ray, with σ̂ in space if that is given. The first flag refuses it
-    /// outside its domain; the second asks for its prediction.
-    fn prepare(
-        &self,
-        estimator: usize,
-        parts: Parts,
-        ask: [bool; 2],
-    ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal>;
+    /// Joins an estimator of the picture with its setup on the ray.
+    fn join(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Joined>, Refusal>;
 }
 
 struct OneRay<P> {
@@ -195,22 +189,8 @@ impl<P: Subject> AnyRay for OneRay<P> {
         Subject::by_quadrature(&*self.problem, panels)
     }
 
-    fn prepare(
-        &self,
-        estimator: usize,
-        parts: Parts,
-        [is_checked, is_predicted]: [bool; 2],
-    ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal> {
-        let entry = &self.entries[estimator];
-        let mut setup = Setup { distributions: false, ..Setup::new(&self.problem, parts)? };
-        if entry.skips() {
-            setup.fields = setup.fields.skipping();
-        }
-        if is_checked {
-            entry.domain(&setup)?;
-        }
-        let prediction = is_predicted.then(|| entry.predict(&setup));
-        Ok((prediction, entry.experiment(setup)))
+    fn join(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Joined>, Refusal> {
+        Ok(self.entries[estimator].join(Setup::new(&self.problem, parts)?))
     }
 }
 

@@ -29,12 +29,12 @@ pub mod spectral_single_scattering;
 pub mod spectral_slab;
 pub mod spectral_transmittance;
 pub mod sphere;
+pub mod traits;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
 pub mod walks;
 
-use crate::recipes::controls;
 use media::catalogue::{PageList, Settings};
 use numeric::rng::Address;
 use theory::Prediction;
@@ -44,36 +44,14 @@ pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::{Fields, Setup};
 
 pub use crate::draw::{Draw, DrawBuffer, Request};
+pub use traits::{Inputs, Traits};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
-
-/// Inputs of an estimator beside the medium.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Inputs {
-    /// A sampling extinction σ̂.
-    pub sampling: bool,
-    /// A control σ_c, if one is given.
-    pub control: bool,
-}
-
-impl Inputs {
-    /// No input.
-    pub const NONE: Self = Self { sampling: false, control: false };
-    /// σ̂ only.
-    pub const SAMPLING: Self = Self { sampling: true, control: false };
-    /// σ̂ and a control.
-    pub const BOTH: Self = Self { sampling: true, control: true };
-}
 
 /// A page of the catalogue of estimators of problem `P`.
 pub trait Estimator<P: Estimated>: Clone + Send + Sync + 'static {
     /// Inputs of the estimator, unless its settings say otherwise.
     const INPUTS: Inputs;
-    /// True if draws have a [`Draw::defect`].
-    const HAS_INVARIANT: bool = false;
-    /// True if σ̂ may be 0 wherever the residual is: collisions there affect only the cost.
-    const SKIPS: bool = false;
-
     /// The estimator, if it has no settings.
     const PLAIN: Option<Self> = None;
 
@@ -83,38 +61,14 @@ pub trait Estimator<P: Estimated>: Clone + Send + Sync + 'static {
         Self::PLAIN
     }
 
-    /// Returns its own settings in words, such as `non-terminating, a=0.7`; empty if it has none. Without `albedo`
-    /// the albedo is left out: it is swept.
-    fn label(&self, albedo: bool) -> String {
-        let _ = albedo;
-        String::new()
-    }
-
-    /// Returns its inputs with its own settings.
-    fn inputs(&self) -> Inputs {
-        Self::INPUTS
+    /// Returns its properties with its own settings.
+    fn traits(&self) -> Traits {
+        Traits::of(Self::INPUTS)
     }
 
     /// Returns the estimator with another albedo; `None` if it has no albedo.
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
         let _ = albedo;
-        None
-    }
-
-    /// Name of the estimator that it equals by definition where it has no control; `None` if there is no such
-    /// estimator.
-    fn without_control() -> Option<&'static str> {
-        None
-    }
-
-    /// The control it uses where the case gives none.
-    fn default_control() -> Option<Box<dyn controls::Recipe>> {
-        None
-    }
-
-    /// Quantity of the medium that the estimator needs beside lookups, σ̂ and control, such as `τ`; `None` for
-    /// none.
-    fn needs(&self) -> Option<&'static str> {
         None
     }
 
@@ -219,9 +173,6 @@ use estimators;
 /// `product_draws!(self => self.rule)`.
 macro_rules! product_draws {
     ($this:ident => $rule:expr) => {
-        const HAS_INVARIANT: bool = true;
-        const SKIPS: bool = true;
-
         fn fill(
             &$this,
             kernel: $crate::Kernel,

@@ -1,10 +1,11 @@
-//! An estimator on a problem, with its type erased: the interface of the harness.
+//! Estimators and experiments with their types erased: the interface of the harness.
+
+use std::any::Any;
 
 use fearless_simd::Level;
 
-use super::{DrawBuffer, Estimated, Estimator, Fields, Inputs, RayView, Refusal, Setup};
+use super::{DrawBuffer, Estimated, Estimator, Fields, RayView, Refusal, Setup, Traits};
 use crate::Request;
-use crate::recipes::controls;
 use numeric::rng::{Address, Streams};
 use theory::Prediction;
 
@@ -17,7 +18,7 @@ pub enum Kernel {
     Packets(Level),
 }
 
-/// An estimator on a problem.
+/// A source of draws.
 pub trait Experiment: Send + Sync {
     /// Replaces the buffer's draws by the next `count` of the block: one virtual call a buffer.
     fn fill_by(&self, kernel: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer);
@@ -27,7 +28,7 @@ pub trait Experiment: Send + Sync {
         self.fill_by(Kernel::Packets(Level::new()), streams, count, buffer);
     }
 
-    /// See [`Estimator::HAS_INVARIANT`].
+    /// True if draws have a [`Draw::defect`](super::Draw::defect).
     fn has_invariant(&self) -> bool {
         false
     }
@@ -39,91 +40,59 @@ pub trait Experiment: Send + Sync {
     }
 }
 
-/// An estimator as written in a case, with its type erased.
-pub trait Entry<P: Estimated>: Send + Sync {
-    /// See [`Estimator::inputs`].
-    fn inputs(&self) -> Inputs;
-    /// See [`Estimator::INPUTS`].
-    fn may_take(&self) -> Inputs;
-    /// See [`Estimator::label`].
-    fn label(&self, albedo: bool) -> String;
-    /// See [`Estimator::with_albedo`].
-    fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>>;
-    /// See [`Estimator::without_control`].
-    fn without_control(&self) -> Option<&'static str>;
-    /// See [`Estimator::default_control`].
-    fn default_control(&self) -> Option<Box<dyn controls::Recipe>>;
-    /// See [`Estimator::needs`].
-    fn needs(&self) -> Option<&'static str>;
-    /// See [`Estimator::domain`].
+/// An estimator joined with its setup.
+pub trait Joined: Experiment {
+    /// Checks that the estimator exists and is unbiased.
     ///
     /// # Errors
     ///
     /// The violated inequality and where on the ray.
-    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal>;
-    /// See [`Estimator::predict`].
-    fn predict(&self, setup: &Setup<P>) -> Prediction;
-    /// See [`Estimator::ray_view`].
-    fn ray_view(&self, setup: &Setup<P>, address: Address) -> Option<RayView>;
-    /// See [`Estimator::SKIPS`].
-    fn skips(&self) -> bool;
-    /// Joins the estimator and its setup.
-    fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment>;
+    fn domain(&self) -> Result<(), Refusal>;
+
+    /// Returns the prediction for a draw.
+    fn predict(&self) -> Prediction;
+
+    /// Returns the ray seen from the side, for estimators of a curve.
+    fn ray_view(&self, address: Address) -> Option<RayView>;
+
+    /// Returns the [`Setup`], for draws that are made outside the catalogue.
+    fn into_setup(self: Box<Self>) -> Box<dyn Any>;
+}
+
+/// An estimator as written in a case.
+pub trait Entry<P: Estimated>: Send + Sync {
+    /// Returns [`Estimator::traits`].
+    fn traits(&self) -> Traits;
+
+    /// Returns [`Estimator::with_albedo`].
+    fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>>;
+
+    /// Joins the estimator and its setup. σ̂ becomes 0 where collisions would change nothing but the cost.
+    fn join(&self, setup: Setup<P>) -> Box<dyn Joined>;
 }
 
 impl<P: Estimated, E: Estimator<P>> Entry<P> for E {
-    fn inputs(&self) -> Inputs {
-        Estimator::inputs(self)
-    }
-
-    fn may_take(&self) -> Inputs {
-        Self::INPUTS
-    }
-
-    fn label(&self, albedo: bool) -> String {
-        Estimator::label(self, albedo)
+    fn traits(&self) -> Traits {
+        Estimator::traits(self)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>> {
         Estimator::with_albedo(self, albedo).map(|page| Box::new(page) as Box<dyn Entry<P>>)
     }
 
-    fn without_control(&self) -> Option<&'static str> {
-        E::without_control()
-    }
-
-    fn default_control(&self) -> Option<Box<dyn controls::Recipe>> {
-        E::default_control()
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        Estimator::needs(self)
-    }
-
-    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
-        Estimator::domain(self, setup)
-    }
-
-    fn predict(&self, setup: &Setup<P>) -> Prediction {
-        Estimator::predict(self, setup)
-    }
-
-    fn ray_view(&self, setup: &Setup<P>, address: Address) -> Option<RayView> {
-        Estimator::ray_view(self, setup, address)
-    }
-
-    fn skips(&self) -> bool {
-        E::SKIPS
-    }
-
-    fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        Box::new(Prepared { estimator: self.clone(), setup })
+    fn join(&self, mut setup: Setup<P>) -> Box<dyn Joined> {
+        let Traits { skips, has_invariant, .. } = Estimator::traits(self);
+        if skips {
+            setup.fields = setup.fields.skipping();
+        }
+        Box::new(Prepared { estimator: self.clone(), setup, has_invariant })
     }
 }
 
 struct Prepared<P: Estimated, E> {
     estimator: E,
     setup: Setup<P>,
+    has_invariant: bool,
 }
 
 impl<P: Estimated, E: Estimator<P>> Experiment for Prepared<P, E> {
@@ -138,10 +107,28 @@ impl<P: Estimated, E: Estimator<P>> Experiment for Prepared<P, E> {
     }
 
     fn has_invariant(&self) -> bool {
-        E::HAS_INVARIANT
+        self.has_invariant
     }
 
     fn skipped(&self) -> f64 {
         self.setup.fields.skipped()
+    }
+}
+
+impl<P: Estimated, E: Estimator<P>> Joined for Prepared<P, E> {
+    fn domain(&self) -> Result<(), Refusal> {
+        self.estimator.domain(&self.setup)
+    }
+
+    fn predict(&self) -> Prediction {
+        self.estimator.predict(&self.setup)
+    }
+
+    fn ray_view(&self, address: Address) -> Option<RayView> {
+        self.estimator.ray_view(&self.setup, address)
+    }
+
+    fn into_setup(self: Box<Self>) -> Box<dyn Any> {
+        Box::new(self.setup)
     }
 }

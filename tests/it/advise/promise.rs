@@ -100,7 +100,7 @@ impl Timed {
         let place = case.at(at).ok()?;
         let pilots = case.pilots(1, listed);
         let prediction = place.predict(listed, None, pilots)?;
-        let experiment = place.experiment(listed, pilots).ok()?;
+        let experiment = place.join(listed, pilots).ok()?;
         let channel = &prediction.channels[0];
         let relative = channel.moments?.variance() / channel.truth.value.powi(2);
         let mut timed = Self {

@@ -56,7 +56,7 @@ pub fn compare(cases: &[Case], least: usize) {
             let variation = swept.filter(|&(what, _)| case.scenario.depends_on(estimator, what));
             let address = case.address(1, estimator, variation);
             let at = case.at(variation).expect("a point of the sweep");
-            let Ok(experiment) = at.experiment(estimator, address) else { continue };
+            let Ok(experiment) = at.join(estimator, address) else { continue };
             let single = drawn(&*experiment, Kernel::Single, address);
             for &level in &levels {
                 compared += 1;

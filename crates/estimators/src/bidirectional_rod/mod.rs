@@ -9,7 +9,7 @@ pub mod walk;
 
 use self::walk::WalkEvents;
 use crate::setup::heuristic;
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, estimators, walks};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, estimators, walks};
 use ::theory::Prediction;
 use ::theory::light::Heuristic;
 use ::theory::problems::BidirectionalRod;
@@ -86,8 +86,8 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         }))
     }
 
-    /// Settings in words, such as `power, ratio connection`.
-    fn label(&self, _: bool) -> String {
+    /// The settings are words such as `power, ratio connection`.
+    fn traits(&self) -> Traits {
         let Method { combination, is_tracked, is_shared } = self.0;
         let first = match combination {
             Combination::Technique(s) => format!("s={s}, "),
@@ -98,11 +98,8 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         };
         let connection = if is_tracked { "ratio" } else { "exact" };
         let subpaths = if is_shared { ", shared subpaths" } else { "" };
-        format!("{first}{connection} connection{subpaths}")
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        (!self.0.is_tracked).then_some("τ")
+        let settings = format!("{first}{connection} connection{subpaths}");
+        Traits { settings, needs: (!is_tracked).then_some("τ"), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {

@@ -3,7 +3,7 @@
 use super::{Chromatic, WalkerWeights, fill};
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{INDEPENDENT, MIS, Walker};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::catalogue::Settings;
 use theory::Prediction;
 use theory::colours::Chances;
@@ -26,14 +26,14 @@ impl<const KIND: u8> OfKind<KIND> {
 
 impl<P: Chromatic, const KIND: u8> Estimator<P> for OfKind<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const HAS_INVARIANT: bool = KIND == MIS;
 
     fn read(settings: &Settings) -> Option<Self> {
         Walker::read(KIND, settings).map(Self)
     }
 
-    fn label(&self, _: bool) -> String {
-        self.0.label()
+    fn traits(&self) -> Traits {
+        let traits = Traits::of(Inputs::SAMPLING);
+        Traits { settings: self.0.label(), has_invariant: KIND == MIS, ..traits }
     }
 
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {

@@ -13,7 +13,7 @@
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
 
 use crate::walks::{self, Route, TentativeCollision, Walk};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Span, kept};
@@ -29,7 +29,10 @@ pub struct Woodcock;
 impl Estimator<FreeFlight> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
-    const SKIPS: bool = true;
+
+    fn traits(&self) -> Traits {
+        Traits { skips: true, ..Traits::of(Self::INPUTS) }
+    }
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
         setup.residual().require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;

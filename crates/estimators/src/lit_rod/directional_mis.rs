@@ -24,7 +24,7 @@
 //! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
 //! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
 
-use super::{Lit, label, lit, read_shadow};
+use super::{Lit, lit, read_shadow};
 use crate::Estimator;
 use crate::setup::heuristic;
 use media::catalogue::Settings;
@@ -49,10 +49,6 @@ impl<P: Lit> Estimator<P> for DirectionalMis {
         let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "delta");
         let heuristic = heuristic::read(settings);
         Some(Self { shadow: shadow?, heuristic: heuristic? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        label(self.shadow, self.heuristic)
     }
 
     lit!(self => self.techniques());

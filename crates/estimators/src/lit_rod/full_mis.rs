@@ -24,7 +24,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.
 
-use super::{Lit, label, lit, read_shadow};
+use super::{Lit, lit, read_shadow};
 use crate::Estimator;
 use crate::setup::heuristic;
 use media::catalogue::Settings;
@@ -49,10 +49,6 @@ impl<P: Lit> Estimator<P> for FullMis {
         let shadow = read_shadow(settings, &["ratio", "exact"], "ratio");
         let heuristic = heuristic::read(settings);
         Some(Self { shadow: shadow?, heuristic: heuristic? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        label(self.shadow, self.heuristic)
     }
 
     lit!(self => self.techniques());

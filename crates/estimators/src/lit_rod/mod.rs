@@ -8,9 +8,9 @@ pub mod unidirectional;
 pub mod walk;
 
 use crate::recipes::inequality;
-use crate::{Estimated, Kernel, Refusal, Request, Setup, estimators};
+use crate::{Estimated, Inputs, Kernel, Refusal, Request, Setup, Traits, estimators};
 use media::catalogue::Settings;
-use theory::light::{Heuristic, Shadow, Techniques};
+use theory::light::{Combination, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
 use theory::rod;
 use theory::{ParticleRule, Prediction};
@@ -68,17 +68,19 @@ fn read_shadow(
     })
 }
 
-/// Settings in words, such as `ratio shadow, power heuristic`.
-fn label(shadow: Shadow, heuristic: Heuristic) -> String {
-    let shadow = match shadow {
-        Shadow::Exact => "exact shadow",
-        Shadow::Delta => "delta shadow",
-        Shadow::Ratio => "ratio shadow",
+/// Properties of an estimator of some techniques, with words such as `ratio shadow, power heuristic`.
+fn traits(techniques: Techniques) -> Traits {
+    let shadow = match techniques.shadow {
+        None => "",
+        Some(Shadow::Exact) => "exact shadow",
+        Some(Shadow::Delta) => "delta shadow",
+        Some(Shadow::Ratio) => "ratio shadow",
     };
-    match heuristic {
-        Heuristic::Balance => shadow.to_owned(),
-        Heuristic::Power => format!("{shadow}, power heuristic"),
-    }
+    let is_power = matches!(techniques.combination, Combination::Mis(_, Heuristic::Power));
+    let heuristic = if is_power { ", power heuristic" } else { "" };
+    let needs = (techniques.shadow == Some(Shadow::Exact)).then_some("τ");
+    let settings = format!("{shadow}{heuristic}");
+    Traits { settings, needs, ..Traits::of(Inputs::SAMPLING) }
 }
 
 /// Implements the trait of estimators for a page by its techniques, as in `lit!(self => self.techniques())`.
@@ -86,9 +88,8 @@ macro_rules! lit {
     ($this:ident => $techniques:expr) => {
         const INPUTS: $crate::Inputs = $crate::Inputs::SAMPLING;
 
-        fn needs(&$this) -> Option<&'static str> {
-            let is_exact = $techniques.shadow == Some(theory::light::Shadow::Exact);
-            is_exact.then_some("τ")
+        fn traits(&$this) -> $crate::Traits {
+            $crate::lit_rod::traits($techniques)
         }
 
         fn domain(

@@ -22,10 +22,10 @@
 //! Science and Engineering 27 (1967); J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating
 //! Attenuation in Participating Media*, ACM Transactions on Graphics 33 (2014).
 
-use super::{Lit, label, lit, read_shadow};
+use super::{Lit, lit, read_shadow};
 use crate::Estimator;
 use media::catalogue::Settings;
-use theory::light::{Combination, Heuristic, Shadow, Techniques};
+use theory::light::{Combination, Shadow, Techniques};
 
 /// Shadow rays alone; σ̂ is its input.
 #[derive(Debug, Clone)]
@@ -43,10 +43,6 @@ impl<P: Lit> Estimator<P> for NextEvent {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "ratio")?;
         Some(Self { shadow })
-    }
-
-    fn label(&self, _: bool) -> String {
-        label(self.shadow, Heuristic::Balance)
     }
 
     lit!(self => self.techniques());

@@ -26,7 +26,7 @@
 
 use super::ByRule;
 use super::walk::{self, RuleAndRoulette};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::catalogue::{Domain, Settings};
 use theory::problems::Rod;
 use theory::problems::rod::Quantity;
@@ -59,8 +59,8 @@ impl Estimator<Rod> for Roulette {
         Some(Self { below })
     }
 
-    fn label(&self, _: bool) -> String {
-        format!("below {}", self.below)
+    fn traits(&self) -> Traits {
+        Traits { settings: format!("below {}", self.below), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Rod>) -> Result<(), Refusal> {

@@ -41,8 +41,9 @@ impl<P: Estimated> Setup<P> {
     pub fn new(problem: &Arc<P>, parts: Parts) -> Result<Self, Refusal> {
         let varied = parts.albedo.and_then(|albedo| problem.with_albedo(albedo));
         let problem = varied.map_or_else(|| problem.clone(), Arc::new);
+        let distributions = parts.distributions;
         let fields = P::Fields::new(&problem, parts)?;
-        Ok(Self { problem, fields, distributions: true })
+        Ok(Self { problem, fields, distributions })
     }
 }
 
@@ -62,6 +63,8 @@ pub struct Parts<'a> {
     pub space: SpaceSampling<'a>,
     /// The swept albedo, in place of the one in the case.
     pub albedo: Option<f64>,
+    /// See [`Setup::distributions`].
+    pub distributions: bool,
 }
 
 /// Fields that all estimators of a problem `P` work on.

@@ -14,7 +14,7 @@ use crate::setup::Residual;
 use crate::space::connection;
 use crate::space::shadow::ShadowRays;
 use crate::walks::{self, Walk};
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::catalogue::Settings;
 use media::{Control, Lookups};
 use numeric::geometry::Bounds;
@@ -447,19 +447,13 @@ impl<P: Planned> Estimator<SingleScattering> for ByPlan<P> {
         P::read(settings).map(|plan| Self(plan, PhantomData))
     }
 
-    fn inputs(&self) -> Inputs {
-        match &self.0.technique {
+    fn traits(&self) -> Traits {
+        let inputs = match &self.0.technique {
             Technique::Vertices(vertices) => vertices.inputs(),
             _ => Inputs::BOTH,
-        }
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.0.label()
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        self.0.needs()
+        };
+        let (settings, needs) = (self.0.label(), self.0.needs());
+        Traits { inputs, settings, needs, ..Traits::of(P::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {

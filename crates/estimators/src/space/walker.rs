@@ -3,7 +3,7 @@
 use super::events::WalkEvents;
 use super::{Particle, Tally, draws};
 use crate::setup::Space;
-use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::catalogue::Settings;
 use numeric::rng::Stream;
 use theory::Prediction;
@@ -69,8 +69,8 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
         read(settings).map(Self)
     }
 
-    fn label(&self, _: bool) -> String {
-        self.0.label()
+    fn traits(&self) -> Traits {
+        Traits { settings: self.0.label(), ..Traits::of(Inputs::SAMPLING) }
     }
 
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {

@@ -25,6 +25,7 @@
 use super::events::{Technique, WalkEvents};
 use super::pages;
 use crate::Estimator;
+use crate::Traits;
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{LastPiece, Weighing};
 use media::catalogue::Settings;
@@ -108,9 +109,10 @@ impl Estimator<SpectralLitRod> for AsPrinted {
         error.map(|error| Self { error })
     }
 
-    fn label(&self, _: bool) -> String {
+    fn traits(&self) -> Traits {
         let word = WORDS.iter().find(|(_, error)| *error == self.error);
-        word.map_or_else(String::new, |(word, _)| (*word).to_owned())
+        let settings = word.map_or_else(String::new, |(word, _)| (*word).to_owned());
+        Traits { settings, ..Traits::of(Self::INPUTS) }
     }
 
     pages!(self => Heroes::Uniform, Tracker::Mis { casts: true });

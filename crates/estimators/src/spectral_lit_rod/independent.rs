@@ -22,7 +22,7 @@ use crate::lit_rod::walk::{Path, Scatterers, ToEmitter};
 use crate::setup::heroes::Heroes;
 use crate::walks::hero::{Law, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{Route, TentativeCollision, Walk, drawn};
-use crate::{Estimator, Inputs, Refusal, Setup};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use media::sampling::BothWays;
@@ -76,10 +76,12 @@ impl Estimator<SpectralLitRod> for Independent {
         Some(Self { is_full: technique? == "full-mis", heroes: heroes? })
     }
 
-    fn label(&self, _: bool) -> String {
+    fn traits(&self) -> Traits {
         let technique = if self.is_full { "full-mis" } else { "unidirectional" };
         let heroes = self.heroes.label();
-        if heroes.is_empty() { technique.into() } else { format!("{technique}, {heroes}") }
+        let settings =
+            if heroes.is_empty() { technique.into() } else { format!("{technique}, {heroes}") };
+        Traits { settings, ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<SpectralLitRod>) -> Result<(), Refusal> {

@@ -2,8 +2,8 @@
 
 use super::events::WalkEvents;
 use super::pages;
-use crate::Estimator;
 use crate::setup::heroes::Heroes;
+use crate::{Estimator, Inputs, Traits};
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
 use theory::rod::lit::spectral::Tracker;
@@ -32,8 +32,8 @@ impl<const CASTS: bool> Estimator<SpectralLitRod> for HeroMis<CASTS> {
         Some(Self { heroes: Heroes::read(settings)? })
     }
 
-    fn label(&self, _: bool) -> String {
-        self.heroes.label()
+    fn traits(&self) -> Traits {
+        Traits { settings: self.heroes.label(), ..Traits::of(Inputs::SAMPLING) }
     }
 
     pages!(self => self.heroes, Tracker::Mis { casts: CASTS });

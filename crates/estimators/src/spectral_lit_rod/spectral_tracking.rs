@@ -25,7 +25,7 @@ use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::read_chances;
 use crate::walks::{Route, TentativeCollision, Walk, drawn};
-use crate::{Estimator, Inputs, Refusal, Setup};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use media::sampling::BothWays;
@@ -49,8 +49,8 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
         Some(Self { chances: read_chances(settings)? })
     }
 
-    fn label(&self, _: bool) -> String {
-        self.chances.label().into()
+    fn traits(&self) -> Traits {
+        Traits { settings: self.chances.label().into(), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<SpectralLitRod>) -> Result<(), Refusal> {

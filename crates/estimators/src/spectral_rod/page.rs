@@ -3,7 +3,7 @@
 use super::{Coloured, walk};
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{HERO, INDEPENDENT, MIS, SPECTRAL_TRACKING};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use theory::Prediction;
@@ -116,12 +116,13 @@ impl<P: Coloured, const KIND: u8> Estimator<P> for OfKind<KIND> {
         Some(Self(Walker::Together { maximum: word == "maximum" }))
     }
 
-    fn label(&self, _: bool) -> String {
-        match &self.0 {
+    fn traits(&self) -> Traits {
+        let settings = match &self.0 {
             Walker::Hero(heroes) => heroes.label(),
             Walker::Together { maximum: true } => "maximum".into(),
             Walker::Together { maximum: false } => "average".into(),
-        }
+        };
+        Traits { settings, ..Traits::of(Inputs::SAMPLING) }
     }
 
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {

@@ -5,7 +5,7 @@ use super::walk;
 use super::{Shadow, predict, predict_independent, realisable};
 use crate::setup::channels;
 use crate::setup::walker::{INDEPENDENT, Walker};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::catalogue::Settings;
 use theory::Prediction;
 use theory::problems::SpectralSingleScattering;
@@ -26,12 +26,9 @@ impl<const KIND: u8> Estimator<SpectralSingleScattering> for OfKind<KIND> {
         Some(Self { walker: walker?, shadow: shadow? })
     }
 
-    fn label(&self, _: bool) -> String {
-        self.shadow.label(&self.walker.label())
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        self.shadow.needs()
+    fn traits(&self) -> Traits {
+        let settings = self.shadow.label(&self.walker.label());
+        Traits { settings, needs: self.shadow.needs(), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<SpectralSingleScattering>) -> Result<(), Refusal> {

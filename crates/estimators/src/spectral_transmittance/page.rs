@@ -5,7 +5,7 @@ use super::walk::{AlongRay, spectrum};
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{HERO, INDEPENDENT, SPECTRAL_TRACKING, read_chances};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::catalogue::Settings;
 use theory::Prediction;
 use theory::colours::Chances;
@@ -80,8 +80,8 @@ impl<const KIND: u8> Estimator<SpectralTransmittance> for OfKind<KIND> {
         }
     }
 
-    fn label(&self, _: bool) -> String {
-        self.label.clone()
+    fn traits(&self) -> Traits {
+        Traits { settings: self.label.clone(), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {

@@ -7,7 +7,7 @@ use super::sharing::{Correct, SharedTechniques, Subpaths, WalkEvents};
 use super::{bidirectional, connected, directional_mis, full_mis, next_event, realisable};
 use crate::space::connection;
 use crate::space::{Particle, Splitting, draws};
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::Majorants;
 use media::catalogue::Settings;
 use numeric::rng::Stream;
@@ -99,8 +99,8 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
         page.map(Self)
     }
 
-    /// Settings in words, such as `analog, ratio shadow, power`.
-    fn label(&self, _: bool) -> String {
+    /// The settings are words such as `analog, ratio shadow, power`.
+    fn traits(&self) -> Traits {
         let SharedTechniques { shadow, subpaths, .. } = self.0.sharing;
         let mut words = match subpaths {
             Some(Subpaths::Independent) => vec!["independent subpaths".into()],
@@ -113,11 +113,8 @@ impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
         if self.0.sharing.weights().is_some_and(|(_, heuristic)| heuristic == Heuristic::Power) {
             words.push("power".into());
         }
-        words.join(", ")
-    }
-
-    fn needs(&self) -> Option<&'static str> {
-        self.0.sharing.shadow.and_then(connection::shadow_needs)
+        let needs = shadow.and_then(connection::shadow_needs);
+        Traits { settings: words.join(", "), needs, ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Sphere>) -> Result<(), Refusal> {

@@ -20,7 +20,7 @@
 use super::woodcock::ZERO_OR_ONE;
 use crate::recipes::controls;
 use crate::walks::{self, Route, TentativeCollision, Walk};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::Control;
 use media::sampling::BothWays;
 use numeric::rng::Random;
@@ -46,8 +46,9 @@ impl Estimator<Transmittance> for Decomposition {
     const INPUTS: Inputs = Inputs::BOTH;
     const PLAIN: Option<Self> = Some(Self);
 
-    fn default_control() -> Option<Box<dyn controls::Recipe>> {
-        Some(Box::new(controls::minimum::Minimum))
+    fn traits(&self) -> Traits {
+        let default_control: Box<dyn controls::Recipe> = Box::new(controls::minimum::Minimum);
+        Traits { default_control: Some(default_control), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {

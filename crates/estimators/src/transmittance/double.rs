@@ -18,7 +18,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
 
-use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
 use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
@@ -52,8 +52,8 @@ impl Estimator<Transmittance> for DoubleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
     const PLAIN: Option<Self> = Some(Self);
 
-    fn without_control() -> Option<&'static str> {
-        Some("ratio")
+    fn traits(&self) -> Traits {
+        Traits { without_control: Some("ratio"), ..Traits::product(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -19,7 +19,7 @@
 
 use super::woodcock::ZERO_OR_ONE;
 use crate::walks::{self, Route, TentativeCollision, Walk};
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Kept, Lane, Row, kept};
@@ -35,7 +35,10 @@ pub struct LocalMajorant;
 impl Estimator<Transmittance> for LocalMajorant {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
-    const SKIPS: bool = true;
+
+    fn traits(&self) -> Traits {
+        Traits { skips: true, ..Traits::of(Self::INPUTS) }
+    }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.fields.require_plain_unit(ZERO_OR_ONE)?;

@@ -18,7 +18,7 @@
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
 
 use super::double::{predict_weighted, unbiased_where_covered};
-use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
 use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
@@ -30,6 +30,10 @@ pub struct Ratio;
 impl Estimator<Transmittance> for Ratio {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
+
+    fn traits(&self) -> Traits {
+        Traits::product(Self::INPUTS)
+    }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         unbiased_where_covered(setup)

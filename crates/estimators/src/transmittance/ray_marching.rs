@@ -22,7 +22,7 @@
 //! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
 
 use crate::walks::slots;
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
+use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::catalogue::Settings;
 use media::{Extinction, Lookups};
 use numeric::Lane;
@@ -69,9 +69,10 @@ impl Estimator<Transmittance> for RayMarching {
         Some(Self { steps: u32::try_from(steps?).ok()?, jitter: jitter? })
     }
 
-    fn label(&self, _: bool) -> String {
+    fn traits(&self) -> Traits {
         let jitter = if self.jitter { ", jittered" } else { "" };
-        format!("{} steps{jitter}", self.steps)
+        let settings = format!("{} steps{jitter}", self.steps);
+        Traits { settings, ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -20,7 +20,7 @@
 
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::recipes::controls;
-use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use media::Control;
 use theory::Prediction;
 use theory::collisions::rules::Weight;
@@ -34,12 +34,12 @@ impl Estimator<Transmittance> for ResidualRatio {
     const INPUTS: Inputs = Inputs::BOTH;
     const PLAIN: Option<Self> = Some(Self);
 
-    fn without_control() -> Option<&'static str> {
-        Some("ratio")
-    }
-
-    fn default_control() -> Option<Box<dyn controls::Recipe>> {
-        Some(Box::new(controls::mean::Mean))
+    fn traits(&self) -> Traits {
+        Traits {
+            without_control: Some("ratio"),
+            default_control: Some(Box::new(controls::mean::Mean)),
+            ..Traits::product(Self::INPUTS)
+        }
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -29,7 +29,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eqs. 9, 12, 18–20 and `SimulateParticle`.
 
-use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use media::catalogue::{Domain, Settings};
 use theory::Prediction;
 use theory::collisions::rules::Single;
@@ -70,17 +70,14 @@ impl Estimator<Transmittance> for SingleParticle {
         Some(Self { rule })
     }
 
-    fn label(&self, albedo: bool) -> String {
-        let (rule, value) = match self.rule {
+    fn traits(&self) -> Traits {
+        let (rule, albedo) = match self.rule {
             Single::Terminating => ("terminating", None),
             Single::Clamped => ("clamped", None),
             Single::NonTerminating { albedo } => ("non-terminating", Some(albedo)),
             Single::Adaptive { albedo } => ("adaptive", Some(albedo)),
         };
-        match value.filter(|_| albedo) {
-            Some(value) => format!("{rule}, a={value}"),
-            None => rule.to_owned(),
-        }
+        Traits { settings: rule.into(), albedo, ..Traits::product(Self::INPUTS) }
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {

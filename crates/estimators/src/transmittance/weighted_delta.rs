@@ -15,7 +15,7 @@
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
 
-use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
 use theory::collisions::rules::Single;
 use theory::problems::Transmittance;
@@ -29,6 +29,10 @@ pub struct WeightedDelta;
 impl Estimator<Transmittance> for WeightedDelta {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
+
+    fn traits(&self) -> Traits {
+        Traits::product(Self::INPUTS)
+    }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.residual().require_coverage()?;

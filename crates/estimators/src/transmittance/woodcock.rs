@@ -18,7 +18,7 @@
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
-use crate::{Estimator, Inputs, Refusal, Setup, product_draws};
+use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
 use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
@@ -34,6 +34,10 @@ pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never se
 impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const PLAIN: Option<Self> = Some(Self);
+
+    fn traits(&self) -> Traits {
+        Traits::product(Self::INPUTS)
+    }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.fields.require_plain_unit(ZERO_OR_ONE)?;

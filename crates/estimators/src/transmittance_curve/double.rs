@@ -22,7 +22,7 @@
 use super::ray_view::{self, RayView};
 use crate::transmittance::product::{Invariant, Subtracted};
 use crate::walks::{self, Route, TentativeCollision, Walk};
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup};
+use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::Medium;
 use media::sampling::BothWays;
 use numeric::rng::{Address, Random, Stream, exponential};
@@ -54,8 +54,10 @@ pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream
 impl Estimator<TransmittanceCurve> for DoubleCurve {
     const INPUTS: Inputs = Inputs::BOTH;
     const PLAIN: Option<Self> = Some(Self);
-    const SKIPS: bool = true;
-    const HAS_INVARIANT: bool = true;
+
+    fn traits(&self) -> Traits {
+        Traits::product(Self::INPUTS)
+    }
 
     fn domain(&self, setup: &Setup<TransmittanceCurve>) -> Result<(), Refusal> {
         setup.residual().require_coverage()?;

@@ -69,8 +69,8 @@ pub fn experiment(
     seed: u64,
 ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
     let pilots = case.pilots(seed, planned.estimator);
-    match case.at(planned.id.variation()).and_then(|at| at.setup(planned.estimator, pilots)) {
-        Ok(setup) => mutants::experiment(about.name, walk, setup).map(Ok),
+    match case.at(planned.id.variation()).and_then(|at| at.join(planned.estimator, pilots)) {
+        Ok(joined) => mutants::experiment(about.name, walk, joined.into_setup()).map(Ok),
         Err(refusal) => Some(Err(refusal)),
     }
 }

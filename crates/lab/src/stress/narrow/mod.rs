@@ -124,7 +124,7 @@ fn prepared(text: &str) -> Option<(Box<dyn Any>, Prediction)> {
     let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
     let case = Case::read(&source).ok()?;
     let at = case.at(None).ok()?;
-    Some((at.setup(0, NOWHERE).ok()?, at.predict(0, None, NOWHERE)?))
+    Some((at.join(0, NOWHERE).ok()?.into_setup(), at.predict(0, None, NOWHERE)?))
 }
 
 /// Both precisions at one point of a curve.

@@ -165,9 +165,13 @@ struct One<'a, N>(&'a Setup<SingleScattering>, Subject<'a>, &'a Trail, PhantomDa
 impl<N: Precision> Run for One<'_, N> {
     type Output = Option<f64>;
 
-    #[inline(always)]
+    /// A function of its own for each walk: the compiler takes minutes for one of all.
+    #[inline(never)]
     fn run(self, walk: &impl Walk) -> Option<f64> {
-        along::<N, _>(walk, self.0, self.1, self.2)
+        compiled_once(
+            #[inline(always)]
+            || along::<N, _>(walk, self.0, self.1, self.2),
+        )
     }
 }
 
