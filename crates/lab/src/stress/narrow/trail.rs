@@ -20,6 +20,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use numeric::fused::compiled_once;
 use numeric::rng::{Random, Stream};
 use numeric::{F32, Lane, Row, ScalarLane};
 
@@ -181,7 +182,7 @@ impl<N: Precision> Traced<'_, N> {
 
     /// Returns the result of a comparison `self < other`, which is `plainly` for the plain numbers. With a drawn number
     /// it is a decision.
-    #[inline(always)]
+    #[inline(never)]
     fn is_less(self, other: Self, plainly: bool) -> bool {
         let (drawn, bound, is_smaller) = match (self.drawn, other.drawn) {
             (Some(drawn), _) => (drawn, other.number, true),
@@ -249,6 +250,19 @@ as_number! {
     Mul::mul(f64): |a, b| a.on_line(b, 0.0, a.number * b);
 }
 
+/// Functions of the number, compiled once and not in every walk: nobody waits for these walks, but for their compilation.
+macro_rules! apart {
+    ($($method:ident)*) => {
+        $(#[inline(never)]
+        fn $method(self) -> Self {
+            Self::plain(compiled_once(
+                #[inline(always)]
+                || self.number.$method(),
+            ))
+        })*
+    };
+}
+
 impl<N: Precision> Neg for Traced<'_, N> {
     type Output = Self;
     #[inline(always)]
@@ -274,8 +288,10 @@ impl<N: Precision> Lane for Traced<'_, N> {
     type Words = N::Words;
 
     as_number! {
-        root() size() nearest() power_of_two() alternate(k) ln() exp() cos() sin() cos_pi_size()
+        root() size() nearest() power_of_two() alternate(k)
     }
+
+    apart! { ln exp cos sin cos_pi_size }
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {
