@@ -262,7 +262,7 @@ const ALL: &str = "
 #[test]
 fn draws_meet_means_variances_covariances_and_lookups() {
     for (sensor, orders, lowest) in [("transmitted", 2, 1), ("reflected", 3, 1)] {
-        let found = rows(&rod(sensor, orders, lowest, ALL), 200_000);
+        let found = rows(&rod(sensor, orders, lowest, ALL), 100_000);
         let mut wrong = Vec::new();
         for row in &found {
             let is_sound = !matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None);
@@ -285,7 +285,7 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
     let estimators = "{ full-mis = {} }, { full-mis.subpaths = \"shared\" },
         { directional-mis = { subpaths = \"shared\", connection = \"ratio\" } }";
     for sensor in ["transmitted", "reflected"] {
-        let found = rows(&rod(sensor, 3, 1, estimators), 300_000);
+        let found = rows(&rod(sensor, 3, 1, estimators), 100_000);
         let of = |name: &str| {
             found.iter().filter(|row| row.experiment.label == name).collect::<Vec<_>>()
         };

@@ -13,7 +13,7 @@ const BALL: &str = include_str!("../cases/single-scattering/spectral-known-bugs.
 const WITHOUT: &str = include_str!("../../cases/single-scattering/spectral-without-mis.toml");
 
 /// Rows of [`BALL`], drawn once for all tests.
-static DRAWN: LazyLock<Vec<Row<'static>>> = LazyLock::new(|| rows(BALL, 800_000));
+static DRAWN: LazyLock<Vec<Row<'static>>> = LazyLock::new(|| rows(BALL, 300_000));
 
 /// Case with the second channel of [`BALL`] alone.
 const SECOND: &str = "title = \"green\"
@@ -70,7 +70,7 @@ fn colour_noise_is_gone_for_the_same_lookups() {
 /// scores of the balance heuristic.
 #[test]
 fn walks_relative_to_one_walker_agree_with_theory() {
-    let rows = rows(WITHOUT, 800_000);
+    let rows = rows(WITHOUT, 300_000);
     assert_eq!(rows.len(), 7 * 3);
     for row in &rows {
         assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);

@@ -95,11 +95,11 @@ fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row<'a>)>) -> (Vec<String
 /// Row of a scene with its prediction.
 type Known = ([&'static str; 3], Row<'static>, Channel);
 
-/// Draws of all pages in all scenes, 200,000 each, made once.
+/// Draws of all pages in all scenes, 100,000 each, made once.
 static DRAWN: LazyLock<Vec<Known>> = LazyLock::new(|| {
     let of = |scene: [&'static str; 3]| {
         let case = [case("bounds", &text(scene, ALL))];
-        let plan = Plan::new(&case, &options(1, 200_000));
+        let plan = Plan::new(&case, &options(1, 100_000));
         let record = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
         let rows = rows_of(record);
         let channel = |planned: &Planned| {

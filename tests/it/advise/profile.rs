@@ -126,7 +126,7 @@ fn rows_of_profiles_are_never_worse_and_agree_with_draws() {
         let of = advice.rows.iter().filter(|row| row.lines.contains(RECIPE));
         for row in of {
             assert_eq!(row.group, Group::Informed);
-            none(&failing(&rows(&format!("{SINES}{}", row.lines), 400_000)));
+            none(&failing(&rows(&format!("{SINES}{}", row.lines), 100_000)));
         }
     }
 }
