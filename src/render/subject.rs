@@ -14,6 +14,7 @@ use media::phase::Phase;
 use media::{Body, Medium, Volume};
 use numeric::geometry::Ray;
 use numeric::{Known, Lane};
+use theory::Mesh;
 use theory::problems::options::chosen;
 use theory::problems::scene::read_albedo;
 use theory::problems::single_scattering::{Lit, OnTheLine};
@@ -22,7 +23,6 @@ use theory::problems::{
     SpectralTransmittance, Transmittance,
 };
 use theory::single::quick;
-use theory::Mesh;
 
 /// Problem that pictures show.
 pub trait Subject: Estimated {
