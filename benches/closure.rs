@@ -12,7 +12,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use trueflight::OfCase;
-use trueflight::case::sweep::What;
+use trueflight::case::sweep::SweptQuantity;
 use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::rng::{Address, Stream};
 use trueflight::{Catalogue, check};
@@ -52,7 +52,8 @@ fn main() {
     let estimator = (0..case.scenario.estimators())
         .find(|&estimator| case.id(estimator, None).estimator.name == "ratio")
         .expect("ratio tracking");
-    let ready = case.at(Some((What::Sampling, 1.0))).and_then(|at| at.prepare(estimator, address));
+    let ready =
+        case.at(Some((SweptQuantity::Sampling, 1.0))).and_then(|at| at.prepare(estimator, address));
     let experiment = ready.unwrap_or_else(|refusal| panic!("{refusal}")).experiment;
     let mut times = [const { Vec::new() }; 4];
     let mut theory = f64::INFINITY;

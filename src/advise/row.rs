@@ -5,7 +5,7 @@ use super::candidates;
 use super::costs::{Prices, Wanted};
 use super::score::Score;
 use super::study::{Best, Study};
-use crate::case::sweep::{Variation, What};
+use crate::case::sweep::{SweptQuantity, Variation};
 use numeric::digits::number;
 use theory::prediction::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
 
@@ -116,8 +116,8 @@ impl Row {
         };
         let needs = [Some(&*own).filter(|own| !own.is_empty()), bound];
         let of = |what| setting.filter(|setting| setting.0 == what).map(|setting| setting.1);
-        let constant = of(What::Sampling);
-        let factor = of(What::SamplingScale).filter(|&factor| factor != 1.0);
+        let constant = of(SweptQuantity::Sampling);
+        let factor = of(SweptQuantity::SamplingScale).filter(|&factor| factor != 1.0);
         let mut row = Self {
             candidate,
             setting,

@@ -8,7 +8,7 @@ use super::Request;
 use super::candidates::{self, family};
 use super::costs::{Price, Prices};
 use super::score::{Score, relative_variance, weights};
-use crate::case::sweep::{Variation, What};
+use crate::case::sweep::{SweptQuantity, Variation};
 use crate::case::{Case, CaseError};
 use estimators::Refusal;
 use media::Body;
@@ -30,7 +30,7 @@ const REACH: i32 = 3;
 /// Free quantity of a candidate.
 #[derive(Debug, Clone, Copy)]
 struct Free {
-    what: What,
+    what: SweptQuantity,
     /// The largest |σ_t − σ_c| of all rays, or 1 for a factor.
     scale: f64,
     /// Ray with that, if it is no probe: a σ̂ that exists there exists on most others.
@@ -99,7 +99,9 @@ impl<'a> Study<'a> {
         // Walks of at least one flight or so: shorter ones say little about a lookup.
         let length = case.scenario.media()[0].support().length();
         let begin = |free: Free| match free.what {
-            What::Sampling if length > 0.0 && length.is_finite() => free.scale.max(1.0 / length),
+            SweptQuantity::Sampling if length > 0.0 && length.is_finite() => {
+                free.scale.max(1.0 / length)
+            }
             _ => free.scale,
         };
         let price = |(candidate, text): (usize, &String)| {
@@ -263,7 +265,7 @@ impl<'a> Study<'a> {
     pub fn best(&self, family: &[usize]) -> Option<Best<'_>> {
         let lead = family[family.len() / 2];
         let scale = |candidate: usize| self.free[candidate].map_or(1.0, |free| free.scale);
-        let is_constant = self.free[lead].is_some_and(|free| free.what == What::Sampling);
+        let is_constant = self.free[lead].is_some_and(|free| free.what == SweptQuantity::Sampling);
         let reach = if is_constant { REACH } else { 1 };
         let first = self.least(lead, (scale(lead), reach), f64::INFINITY);
         let start = first.as_ref().map_or(1.0, |(least, _)| least.x / scale(lead));
@@ -327,12 +329,13 @@ fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>>
     let mut scales: BTreeMap<String, (f64, usize)> = BTreeMap::new();
     let mut free = |(candidate, text): (usize, &String)| {
         let scenario = &cases[0].scenario;
-        let is_free = |what: &What| scenario.depends_on(candidate, *what);
-        let what = [What::Sampling, What::SamplingScale].into_iter().find(is_free)?;
+        let is_free = |what: &SweptQuantity| scenario.depends_on(candidate, *what);
+        let what =
+            [SweptQuantity::Sampling, SweptQuantity::SamplingScale].into_iter().find(is_free)?;
         if candidates::is_profile(text) {
             return None;
         }
-        if what == What::SamplingScale {
+        if what == SweptQuantity::SamplingScale {
             return Some(Free { what, scale: 1.0, ray: None });
         }
         // Candidates with one control have one residual.

@@ -2,7 +2,7 @@
 
 use crate::case::forms::explain_estimator;
 use crate::case::id::EstimatorName;
-use crate::case::sweep::What;
+use crate::case::sweep::SweptQuantity;
 use estimators::own::EstimatorReader;
 use estimators::recipes::sampling::spectral::Spectral;
 use estimators::recipes::{controls, sampling};
@@ -34,7 +34,7 @@ pub struct Defaults {
     /// True if the case gives a σ̂ for all.
     pub sampling: bool,
     /// Swept quantity.
-    pub swept: Option<What>,
+    pub swept: Option<SweptQuantity>,
     /// True if every lookup must be counted: then σ̂ may not be learned from lookups that are not.
     pub counts_lookups: bool,
 }
@@ -319,7 +319,11 @@ impl Estimators {
 }
 
 /// Records a mistake for a control, or a sweep of one, that no estimator takes.
-fn refuse_idle_controls(settings: &Settings, estimators: &[ParsedEstimator], swept: Option<What>) {
+fn refuse_idle_controls(
+    settings: &Settings,
+    estimators: &[ParsedEstimator],
+    swept: Option<SweptQuantity>,
+) {
     if estimators.is_empty() || estimators.iter().any(|e| e.traits.inputs.control) {
         return;
     }
@@ -328,7 +332,7 @@ fn refuse_idle_controls(settings: &Settings, estimators: &[ParsedEstimator], swe
     if settings.has("control") {
         settings.fault("control", message, help);
     }
-    if matches!(swept, Some(What::Control | What::Points)) {
+    if matches!(swept, Some(SweptQuantity::Control | SweptQuantity::Points)) {
         settings.fault("sweep", message, help);
     }
 }

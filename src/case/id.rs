@@ -6,7 +6,7 @@ use std::hash::{Hash, Hasher};
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::sweep::{Variation, What};
+use crate::case::sweep::{SweptQuantity, Variation};
 use numeric::rng::{Address, name_hash};
 
 /// Identity of an experiment: one estimator of a case at one point of the sweep.
@@ -63,7 +63,7 @@ pub struct SamplingName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SweepPoint {
     /// The swept quantity.
-    pub what: What,
+    pub what: SweptQuantity,
     /// Its value.
     pub value: Number,
 }
@@ -148,7 +148,7 @@ impl ExperimentId {
 impl Display for ExperimentId {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         write!(f, "{}:{}", self.case, self.label())?;
-        let is_swept = self.swept.is_some_and(|point| point.what == What::Sampling);
+        let is_swept = self.swept.is_some_and(|point| point.what == SweptQuantity::Sampling);
         if !is_swept || self.sampling.kind != "constant" {
             write!(f, "{}", self.sampling)?;
         }
@@ -176,7 +176,7 @@ impl Display for SamplingName {
 mod tests {
     use super::*;
 
-    fn id(settings: &str, swept: Option<(What, f64)>, namesake: usize) -> ExperimentId {
+    fn id(settings: &str, swept: Option<(SweptQuantity, f64)>, namesake: usize) -> ExperimentId {
         ExperimentId {
             case: "rod/albedos".into(),
             problem: "rod".into(),
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn text_has_all_that_tells_experiments_apart() {
-        let text = id("a=0.7", Some((What::AlbedoScale, 0.5)), 2).to_string();
+        let text = id("a=0.7", Some((SweptQuantity::AlbedoScale, 0.5)), 2).to_string();
         let expected =
             "rod/albedos:single (a=0.7) #2, σ̂ majorant (2), control mean, albedo-scale 0.5";
         assert_eq!(text, expected);
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn json_gives_the_identity_back() {
-        for id in [id("a=0.7", Some((What::Points, 3.0)), 2), id("", None, 1)] {
+        for id in [id("a=0.7", Some((SweptQuantity::Points, 3.0)), 2), id("", None, 1)] {
             let text = serde_json::to_string(&id).expect("an identity is JSON");
             assert_eq!(serde_json::from_str::<ExperimentId>(&text).expect("an identity"), id);
         }

@@ -46,7 +46,7 @@ pub mod sweep;
 
 pub use build::Ready;
 pub use catalogue::Catalogue;
-pub use scenario::{At, Course, Scenario};
+pub use scenario::{Course, Scenario, ScenarioAtPoint};
 pub use spec::{CaseError, Source, Spec};
 
 /// The manual of case files.
@@ -60,8 +60,8 @@ use std::path::PathBuf;
 
 use crate::case::estimator::{Defaults, read_expect};
 use crate::case::id::ExperimentId;
-use crate::case::scenario::Held;
-use crate::case::sweep::{SweepAxis, Variation, What};
+use crate::case::scenario::ScenarioSource;
+use crate::case::sweep::{SweepAxis, SweptQuantity, Variation};
 use estimators::Refusal;
 use media::Body;
 use media::catalogue::own_pages::{self, OwnPages};
@@ -185,15 +185,19 @@ impl Case {
     /// # Errors
     ///
     /// The value is not in the sweep, and the case cannot be read at it.
-    pub fn at(&self, variation: Variation) -> Result<At<'_>, Refusal> {
+    pub fn at(&self, variation: Variation) -> Result<ScenarioAtPoint<'_>, Refusal> {
         let is_swept = |what| self.sweep.as_ref().is_some_and(|axis| axis.what == what);
         let varied = variation.filter(|&(what, _)| what.varies_medium() && is_swept(what));
         let Some((what, value)) = varied else { return Ok(self.as_written(variation)) };
         if let Some((_, known)) = self.varied.iter().find(|(known, _)| *known == value) {
-            return Ok(At::new(self, Held::Listed(known), variation));
+            return Ok(ScenarioAtPoint::new(self, ScenarioSource::Listed(known), variation));
         }
         match read_varied(&self.spec, &self.scenario, what, value) {
-            Ok(scenario) => Ok(At::new(self, Held::Beside(Box::new(scenario)), variation)),
+            Ok(scenario) => Ok(ScenarioAtPoint::new(
+                self,
+                ScenarioSource::Beside(Box::new(scenario)),
+                variation,
+            )),
             Err(faults) => {
                 let needs = "a case that can be read at this value of the sweep";
                 let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
@@ -213,8 +217,8 @@ impl Case {
         at.id(estimator).address(seed, at.alias(estimator).as_ref())
     }
 
-    fn as_written(&self, variation: Variation) -> At<'_> {
-        At::new(self, Held::Listed(&self.scenario), variation)
+    fn as_written(&self, variation: Variation) -> ScenarioAtPoint<'_> {
+        ScenarioAtPoint::new(self, ScenarioSource::Listed(&self.scenario), variation)
     }
 
     /// Returns the address of the random numbers of an estimator's pilot rays. It is the same all along a sweep, so
@@ -259,7 +263,7 @@ fn read_problem(root: &Settings, known: Option<&Body>) -> Option<Problem> {
     let (scenario, sweep) = (scenario?, sweep?);
     expect_biased?;
     let none_has = |what| !(0..scenario.estimators()).any(|e| scenario.depends_on(e, what));
-    if swept.is_some_and(|what| what == What::Albedo && none_has(what)) {
+    if swept.is_some_and(|what| what == SweptQuantity::Albedo && none_has(what)) {
         let help = "those of colours are swept by `albedo-scale`";
         settings.fault("sweep", "no estimator of this case has an albedo", help);
         return None;
@@ -299,7 +303,7 @@ impl Problem {
 fn read_varied(
     spec: &Spec,
     written: &Scenario,
-    what: What,
+    what: SweptQuantity,
     value: f64,
 ) -> Result<Scenario, Vec<Fault>> {
     let spec = spec.at(what, value).map_err(|fault| vec![fault])?;

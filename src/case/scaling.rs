@@ -8,7 +8,7 @@
 //! [`Stratified::EXTINCTIONS`]: media::Stratified::EXTINCTIONS
 
 use crate::case::spec::Spec;
-use crate::case::sweep::What;
+use crate::case::sweep::SweptQuantity;
 use estimators::recipes::{controls, sampling};
 use media::catalogue::{Entry, Fault, Node, OwnPages, Value};
 use media::{CATALOGUE, Medium, reader};
@@ -29,15 +29,19 @@ impl Spec {
     /// # Errors
     ///
     /// The sweep does not apply to the case.
-    pub fn at(&self, what: What, value: f64) -> Result<Self, Fault> {
+    pub fn at(&self, what: SweptQuantity, value: f64) -> Result<Self, Fault> {
         let mut spec = self.clone();
         let scaling = Scaling { own_pages: self.own_pages() };
         let settings = spec.problem_mut().map_or(&mut [][..], Vec::as_mut_slice);
         match what {
-            What::Density => scaling.density(settings, value)?,
-            What::AlbedoScale => scaling.albedo_scale(settings, value)?,
-            What::Contrast => scaling.contrast(settings, value)?,
-            What::Sampling | What::SamplingScale | What::Albedo | What::Control | What::Points => {}
+            SweptQuantity::Density => scaling.density(settings, value)?,
+            SweptQuantity::AlbedoScale => scaling.albedo_scale(settings, value)?,
+            SweptQuantity::Contrast => scaling.contrast(settings, value)?,
+            SweptQuantity::Sampling
+            | SweptQuantity::SamplingScale
+            | SweptQuantity::Albedo
+            | SweptQuantity::Control
+            | SweptQuantity::Points => {}
         }
         Ok(spec)
     }
@@ -45,7 +49,12 @@ impl Spec {
 
 /// Returns whether the media of all channels at a value of a sweep are those as written, scaled by the sweep. Only
 /// fields that a program adds are compared.
-pub fn is_proportional(name: &str, [written, varied]: [&[Medium]; 2], what: What, x: f64) -> bool {
+pub fn is_proportional(
+    name: &str,
+    [written, varied]: [&[Medium]; 2],
+    what: SweptQuantity,
+    x: f64,
+) -> bool {
     let is_built_in = |name: &str| CATALOGUE.pages.iter().any(|page| page.name() == name);
     if name.split(", ").all(is_built_in) {
         return true;
@@ -60,8 +69,8 @@ pub fn is_proportional(name: &str, [written, varied]: [&[Medium]; 2], what: What
         let mean = written.iter().map(at).sum::<f64>() / written.len() as f64;
         written.iter().zip(varied).all(|(written, varied)| {
             let expected = match what {
-                What::Density => x * at(written),
-                What::Contrast => (1.0 - x) * mean + x * at(written),
+                SweptQuantity::Density => x * at(written),
+                SweptQuantity::Contrast => (1.0 - x) * mean + x * at(written),
                 _ => at(written),
             };
             (at(varied) - expected).abs() <= AGREEMENT * (expected.abs() + mean)

@@ -9,7 +9,7 @@ use crate::case::Case;
 use crate::case::build::{AnyProblem, ProblemKind, Ready, refuse_what_cannot_be_computed};
 use crate::case::estimator::{Defaults, Estimators};
 use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
-use crate::case::sweep::{Variation, What};
+use crate::case::sweep::{SweptQuantity, Variation};
 use estimators::recipes::{controls, sampling};
 use estimators::setup::Parts;
 use estimators::trial::Joined;
@@ -49,7 +49,8 @@ impl Scenario {
     ) -> Option<Self> {
         // A sweep that could not be read may have been one of σ̂.
         let unread = settings.has("sweep") && defaults.swept.is_none();
-        let sampling = settings.has("sampling") || defaults.swept == Some(What::Sampling) || unread;
+        let sampling =
+            settings.has("sampling") || defaults.swept == Some(SweptQuantity::Sampling) || unread;
         let built = (kind.build)(body, settings, Defaults { sampling, ..defaults });
         let ((problem, estimators), body) = (built?, body?.clone());
         let made = estimators.list.iter().map(|_| OnceLock::new()).collect();
@@ -93,19 +94,19 @@ impl Scenario {
     }
 
     /// Returns whether an estimator depends on a swept quantity.
-    pub fn depends_on(&self, estimator: usize, what: What) -> bool {
+    pub fn depends_on(&self, estimator: usize, what: SweptQuantity) -> bool {
         let parsed = &self.estimators.list[estimator];
         let inputs = parsed.traits.inputs;
         match what {
-            What::Sampling => inputs.sampling && parsed.sampling.is_none(),
-            What::SamplingScale => inputs.sampling,
-            What::Albedo => self.problem.has_albedo(estimator),
-            What::Control => inputs.control && parsed.control.is_none(),
-            What::Points => {
+            SweptQuantity::Sampling => inputs.sampling && parsed.sampling.is_none(),
+            SweptQuantity::SamplingScale => inputs.sampling,
+            SweptQuantity::Albedo => self.problem.has_albedo(estimator),
+            SweptQuantity::Control => inputs.control && parsed.control.is_none(),
+            SweptQuantity::Points => {
                 let control = self.estimators.given_control(parsed);
                 control.is_some_and(|control| control.with_points(2).is_some())
             }
-            What::Density | What::AlbedoScale | What::Contrast => true,
+            SweptQuantity::Density | SweptQuantity::AlbedoScale | SweptQuantity::Contrast => true,
         }
     }
 
@@ -141,7 +142,7 @@ impl Scenario {
     ) -> T {
         let parsed = &self.estimators.list[estimator];
         let varied = match variation {
-            Some((What::Points, points)) => {
+            Some((SweptQuantity::Points, points)) => {
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
                 // a checked count
                 let points = points as usize;
@@ -149,7 +150,9 @@ impl Scenario {
                     .given_control(parsed)
                     .and_then(|control| control.with_points(points))
             }
-            Some((What::Control, value)) if self.depends_on(estimator, What::Control) => {
+            Some((SweptQuantity::Control, value))
+                if self.depends_on(estimator, SweptQuantity::Control) =>
+            {
                 Some(Box::new(controls::constant::Constant { value }) as Box<dyn controls::Recipe>)
             }
             _ => None,
@@ -174,15 +177,16 @@ impl Scenario {
         })?;
         let (constant, factor) = match variation {
             _ if what_if.is_some() => (what_if, 1.0),
-            Some((What::Sampling, value)) => (Some(value), 1.0),
-            Some((What::SamplingScale, factor)) => (None, factor),
+            Some((SweptQuantity::Sampling, value)) => (Some(value), 1.0),
+            Some((SweptQuantity::SamplingScale, factor)) => (None, factor),
             _ => (None, 1.0),
         };
         let parsed = &self.estimators.list[estimator];
         let recipe = self.estimators.sampling_of(parsed);
         let constant = constant.filter(|_| parsed.traits.inputs.sampling);
         let constant = constant.map(|value| sampling::constant::Constant { value });
-        let is_control_varied = matches!(variation, Some((What::Points | What::Control, _)));
+        let is_control_varied =
+            matches!(variation, Some((SweptQuantity::Points | SweptQuantity::Control, _)));
         let is_fixed = constant.is_none()
             && !is_control_varied
             && !recipe.is_some_and(sampling::Recipe::learns);
@@ -215,7 +219,7 @@ impl Scenario {
             Ok(Arc::new(sampling::in_space(recipe, volume)?.scaled(factor)))
         });
         let albedo = match variation {
-            Some((What::Albedo, albedo)) => Some(albedo),
+            Some((SweptQuantity::Albedo, albedo)) => Some(albedo),
             _ => None,
         };
         Ok((Parts { channels, control, space, albedo, distributions: false }, lookups))
@@ -223,30 +227,30 @@ impl Scenario {
 }
 
 /// Case at one value of its sweep.
-pub struct At<'a> {
+pub struct ScenarioAtPoint<'a> {
     case: &'a Case,
-    scenario: Held<'a>,
+    scenario: ScenarioSource<'a>,
     /// Point of the sweep.
     swept: Variation,
 }
 
 /// Scenario of the case, or one that was read for a value beside its sweep.
-pub(super) enum Held<'a> {
+pub(super) enum ScenarioSource<'a> {
     Listed(&'a Scenario),
     Beside(Box<Scenario>),
 }
 
-impl<'a> At<'a> {
+impl<'a> ScenarioAtPoint<'a> {
     /// Takes a scenario of the case at a point of the sweep.
-    pub(super) fn new(case: &'a Case, scenario: Held<'a>, swept: Variation) -> Self {
+    pub(super) fn new(case: &'a Case, scenario: ScenarioSource<'a>, swept: Variation) -> Self {
         Self { case, scenario, swept }
     }
 
     /// Returns the medium and the estimators.
     pub fn scenario(&self) -> &Scenario {
         match &self.scenario {
-            Held::Listed(scenario) => scenario,
-            Held::Beside(scenario) => scenario,
+            ScenarioSource::Listed(scenario) => scenario,
+            ScenarioSource::Beside(scenario) => scenario,
         }
     }
 
@@ -268,12 +272,12 @@ impl<'a> At<'a> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let parsed = &scenario.estimators.list[estimator];
         let (constant, kind) = match (variation, scenario.estimators.sampling_of(parsed)) {
-            (Some((What::Sampling, value)), _)
-                if scenario.depends_on(estimator, What::Sampling) =>
+            (Some((SweptQuantity::Sampling, value)), _)
+                if scenario.depends_on(estimator, SweptQuantity::Sampling) =>
             {
                 (Some(value), "constant".into())
             }
-            (Some((What::SamplingScale, factor)), Some(recipe)) => {
+            (Some((SweptQuantity::SamplingScale, factor)), Some(recipe)) => {
                 let kind = format!("{factor} × {}", recipe.label());
                 (recipe.constant().map(|value| value * factor), kind)
             }
@@ -283,7 +287,7 @@ impl<'a> At<'a> {
         ExperimentId {
             case: self.case.name.clone(),
             problem: self.case.problem.clone(),
-            estimator: parsed.label(!matches!(variation, Some((What::Albedo, _)))),
+            estimator: parsed.label(!matches!(variation, Some((SweptQuantity::Albedo, _)))),
             sampling: SamplingName { constant: constant.map(Number), kind },
             control: scenario.with_control(estimator, variation, |recipe| recipe.label()),
             swept: self.swept.map(|(what, value)| SweepPoint { what, value: Number(value) }),
@@ -304,10 +308,10 @@ impl<'a> At<'a> {
         let parsed = &scenario.estimators.list[estimator];
         let control = scenario.with_control(estimator, variation, |recipe| recipe.needs());
         // A swept σ̂ replaces the recipe.
-        let is_swept = matches!(variation, Some((What::Sampling, _)));
+        let is_swept = matches!(variation, Some((SweptQuantity::Sampling, _)));
         let recipe = scenario.estimators.sampling_of(parsed);
-        let recipe =
-            recipe.filter(|_| !(is_swept && scenario.depends_on(estimator, What::Sampling)));
+        let recipe = recipe
+            .filter(|_| !(is_swept && scenario.depends_on(estimator, SweptQuantity::Sampling)));
         let own = parsed.traits.needs.filter(|own| control != Some(own));
         let needs = [own, control, recipe.and_then(sampling::Recipe::needs)];
         needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
@@ -334,7 +338,7 @@ impl<'a> At<'a> {
         self.scenario().problem.join(estimator, parts)
     }
 
-    /// Prepares an experiment as [`At::join`] does, with its prediction.
+    /// Prepares an experiment as [`ScenarioAtPoint::join`] does, with its prediction.
     ///
     /// # Errors
     ///
@@ -373,7 +377,7 @@ impl<'a> At<'a> {
         Some(Prediction { setup_lookups, ..joined.predict() })
     }
 
-    /// Predicts an experiment as [`At::predict`] does, to a few thousandths, in less time where the medium has many pieces.
+    /// Predicts an experiment as [`ScenarioAtPoint::predict`] does, to a few thousandths, in less time where the medium has many pieces.
     pub fn estimate(&self, estimator: usize, pilots: Address) -> Option<Prediction> {
         let Some(mesh) = self.scenario().coarse() else {
             return self.predict(estimator, None, pilots);

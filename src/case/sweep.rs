@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 /// The quantity that a sweep varies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum What {
+pub enum SweptQuantity {
     /// A constant σ̂, for every estimator without its own.
     Sampling,
     /// A factor on each estimator's own σ̂.
@@ -49,20 +49,20 @@ pub enum What {
 }
 
 /// Swept quantity with one of its values; `None` outside the sweep.
-pub type Variation = Option<(What, f64)>;
+pub type Variation = Option<(SweptQuantity, f64)>;
 
 /// Every quantity with its key in case files, the axis title, and the range of its values.
-const KINDS: [(What, &str, &str, Domain); 8] = {
+const KINDS: [(SweptQuantity, &str, &str, Domain); 8] = {
     use Domain::{Finite, NonNegative, Positive, Unit};
     [
-        (What::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Positive),
-        (What::SamplingScale, "sampling-scale", "factor on σ̂", Positive),
-        (What::Albedo, "albedo", "albedo a", Unit),
-        (What::Control, "control", "control σ_c [1/length]", Finite),
-        (What::Points, "points", "explorer points", Positive),
-        (What::Density, "density", "density: factor on σₜ and σ̂", Positive),
-        (What::AlbedoScale, "albedo-scale", "factor on the albedos", NonNegative),
-        (What::Contrast, "contrast", "colour contrast c", NonNegative),
+        (SweptQuantity::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Positive),
+        (SweptQuantity::SamplingScale, "sampling-scale", "factor on σ̂", Positive),
+        (SweptQuantity::Albedo, "albedo", "albedo a", Unit),
+        (SweptQuantity::Control, "control", "control σ_c [1/length]", Finite),
+        (SweptQuantity::Points, "points", "explorer points", Positive),
+        (SweptQuantity::Density, "density", "density: factor on σₜ and σ̂", Positive),
+        (SweptQuantity::AlbedoScale, "albedo-scale", "factor on the albedos", NonNegative),
+        (SweptQuantity::Contrast, "contrast", "colour contrast c", NonNegative),
     ]
 };
 
@@ -70,14 +70,14 @@ const KINDS: [(What, &str, &str, Domain); 8] = {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepAxis {
     /// Swept quantity.
-    pub what: What,
+    pub what: SweptQuantity,
     /// The values, in the order of the case.
     pub values: Vec<f64>,
     /// True if they are spaced by factors.
     pub log: bool,
 }
 
-impl What {
+impl SweptQuantity {
     /// Returns the key in case files.
     pub fn key(self) -> &'static str {
         self.kind().1
@@ -109,7 +109,7 @@ impl What {
         if self == Self::Points { "a whole number from 2" } else { self.kind().3.words() }
     }
 
-    fn kind(self) -> &'static (What, &'static str, &'static str, Domain) {
+    fn kind(self) -> &'static (SweptQuantity, &'static str, &'static str, Domain) {
         KINDS.iter().find(|kind| kind.0 == self).unwrap_or(&KINDS[0])
     }
 }
@@ -131,7 +131,7 @@ impl SweepAxis {
             Self::read_range(what, domain, &sweep)
         };
         let read = read?;
-        if what == What::Points && !read.values.iter().all(|&n| what.allows(n)) {
+        if what == SweptQuantity::Points && !read.values.iter().all(|&n| what.allows(n)) {
             let help = "explorer points are whole numbers from 2";
             sweep.fault_at(sweep.span.clone(), "", "these are no numbers of points", help);
             return None;
@@ -139,7 +139,7 @@ impl SweepAxis {
         Some(read)
     }
 
-    fn read_range(what: What, domain: Domain, sweep: &Settings) -> Option<Self> {
+    fn read_range(what: SweptQuantity, domain: Domain, sweep: &Settings) -> Option<Self> {
         let from = sweep.number("from", domain);
         let to = sweep.number("to", domain);
         let points = sweep.count("points", 1..=1000);
@@ -159,7 +159,7 @@ impl SweepAxis {
                 (false, false) => from + (to - from) * u,
             }
         };
-        let round = |x: f64| if what == What::Points { x.round() } else { tidy(x) };
+        let round = |x: f64| if what == SweptQuantity::Points { x.round() } else { tidy(x) };
         let mut values: Vec<f64> = (0..points).map(at).map(round).collect();
         values.dedup();
         Some(Self { what, values, log })

@@ -9,7 +9,7 @@ use super::help::Names;
 use super::{Console, numbers, output};
 use crate::case::catalogue::source;
 use crate::case::{CaseError, Catalogue};
-use crate::export::{self, ExportError, Target, Wishes};
+use crate::export::{self, ExportError, ExportOptions, Target};
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]
@@ -52,7 +52,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         Renderer::Pbrt => Target::Pbrt,
     };
     let channels = arguments.channels.as_ref();
-    let wishes = Wishes {
+    let wishes = ExportOptions {
         cells: arguments.cells.map(usize::from),
         channels: channels.map(|list| list.iter().copied().map(usize::from).collect()),
         heterogeneous: arguments.heterogeneous,

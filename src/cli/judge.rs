@@ -17,7 +17,7 @@ use crate::json;
 use crate::judge::{self, Column, Draws, Format, Judgement, Options, ROUNDING};
 use crate::record::Verdict;
 use crate::report::judge as report;
-use crate::report::judge::junit::Told;
+use crate::report::judge::junit::JUnitCase;
 use media::files;
 
 /// Largest number of draws that are read from a pipe, which may be endless.
@@ -187,8 +187,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         }
     }
     arguments.show(&judged, console)?;
-    let told: Vec<Told> =
-        judged.iter().map(|found| Told::of_draws(&found.name(), &found.judgement)).collect();
+    let told: Vec<JUnitCase> =
+        judged.iter().map(|found| JUnitCase::of_draws(&found.name(), &found.judgement)).collect();
     let unread: Vec<(String, String)> =
         errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
     arguments.write_junit(&told, &unread)?;
@@ -241,7 +241,7 @@ impl Arguments {
         files::writable(path).with_context(wrong)
     }
 
-    fn write_junit(&self, told: &[Told], unread: &[(String, String)]) -> anyhow::Result<()> {
+    fn write_junit(&self, told: &[JUnitCase], unread: &[(String, String)]) -> anyhow::Result<()> {
         let Some(path) = &self.junit else { return Ok(()) };
         let inconclusive = Inconclusive::in_junit(self.inconclusive);
         let text = report::junit::text(told, unread, self.alpha, inconclusive);

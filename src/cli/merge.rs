@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::output::{self, Errors};
 use super::reports::Reports;
-use super::run::{self, Kept, RUN};
+use super::run::{self, RUN, ResumeArguments};
 use super::{Console, journal};
 use crate::case::Catalogue;
 use crate::draw::share;
@@ -48,7 +48,7 @@ pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> any
     let mut asked = run::Arguments::of(&header.words)?.asked;
     asked.reports = arguments.reports.clone();
     // Draws of an earlier run are not a part.
-    run::judge(&asked, RUN, &Kept::FRESH, catalogue, console, |plan| {
+    run::judge(&asked, RUN, &ResumeArguments::FRESH, catalogue, console, |plan| {
         let own = Header::new(plan, &fingerprint()?, &header.words, None);
         if let Some(why) = header.mismatch(&own) {
             bail!("{} cannot be judged here: {why}", arguments.parts[0].display());

@@ -77,7 +77,7 @@ enum Command {
     /// Judge a run that several machines drew in parts, by `run --shard`
     Merge(merge::Merge),
     /// Judge estimators in CI: stop as soon as all is decided; JUnit, Markdown and GitHub annotations
-    Check(run::Asked),
+    Check(run::CheckArguments),
     /// Print what theory expects, without draws: moments, costs, the best σ̂, refusals
     Predict(predict::Predict),
     /// Rank all estimators of a case, each with its best σ̂ and control, by the time to an error

@@ -13,7 +13,7 @@ use crate::draw::store::{Header, Store};
 use crate::plan::options::DRAWS;
 use crate::record::baseline::fingerprint;
 use crate::record::build;
-use crate::report::run::console::{View, foretold};
+use crate::report::run::console::{View, prediction_heading};
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]
@@ -46,7 +46,7 @@ pub fn predict(
     let is_told = arguments.format == Format::Table && !console.quiet;
     let record = selection.with_plan(&cases, &options, console, |plan| {
         if is_told {
-            output::print(&foretold(plan))?;
+            output::print(&prediction_heading(plan))?;
         }
         Ok(predict(plan))
     })?;

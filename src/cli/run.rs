@@ -42,14 +42,14 @@ const CHECK: Profile = Profile { draws: 400_000, out: None, is_whole: false };
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    pub asked: Asked,
+    pub asked: CheckArguments,
     #[command(flatten)]
-    kept: Kept,
+    kept: ResumeArguments,
 }
 
 /// Arguments that `run` and `check` share.
 #[derive(Debug, Clone, Args)]
-pub struct Asked {
+pub struct CheckArguments {
     #[command(flatten)]
     pub selection: Selection,
     #[command(flatten)]
@@ -63,7 +63,7 @@ pub struct Asked {
 /// Options on interrupted and shared runs.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Interrupted and shared runs")]
-pub struct Kept {
+pub struct ResumeArguments {
     /// Draw every experiment, also those that have not changed since the last run in the same folder, or
     /// that an interrupted one there has begun
     #[arg(long)]
@@ -78,12 +78,12 @@ pub struct Kept {
     shard: Option<Share>,
 }
 
-impl Kept {
+impl ResumeArguments {
     /// Draws everything.
     pub const FRESH: Self = Self { fresh: true, resume: None, shard: None };
 }
 
-impl Asked {
+impl CheckArguments {
     /// Returns the words that ask for the draws of these options, on any machine.
     fn words(&self, options: &Options) -> Vec<String> {
         let mut words = options.words();
@@ -151,8 +151,12 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
 }
 
 /// Draws and judges with the defaults of `check`.
-pub fn check(asked: &Asked, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    judge(asked, CHECK, &Kept::FRESH, catalogue, console, |_| Ok(Store::default()))
+pub fn check(
+    asked: &CheckArguments,
+    catalogue: &Catalogue,
+    console: &Console,
+) -> anyhow::Result<u8> {
+    judge(asked, CHECK, &ResumeArguments::FRESH, catalogue, console, |_| Ok(Store::default()))
 }
 
 /// Lets workers draw a run, or the rest of a resumed one.
@@ -235,9 +239,9 @@ fn draw_share(
 
 /// Draws the blocks that the store does not have, judges, writes, prints.
 pub fn judge(
-    asked: &Asked,
+    asked: &CheckArguments,
     profile: Profile,
-    kept: &Kept,
+    kept: &ResumeArguments,
     catalogue: &Catalogue,
     console: &Console,
     store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,

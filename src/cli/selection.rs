@@ -144,7 +144,7 @@ impl Experiments {
         console: &Console,
     ) -> anyhow::Result<Plan<'a>> {
         let bar = output::progress("planning", "experiments", 0, console);
-        let plan = Plan::heard(cases, options, &|prepared, all| {
+        let plan = Plan::with_progress(cases, options, &|prepared, all| {
             bar.set_length(all as u64);
             bar.set_position(prepared as u64);
         });

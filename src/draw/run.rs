@@ -331,9 +331,9 @@ impl Running<'_> {
 
     /// Returns whether the check that ends the drawing has failed.
     fn has_failed(&self, plan: &Plan) -> bool {
-        let Some(name) = &plan.options.until_failed else { return false };
+        let Some(check) = plan.options.until_failed else { return false };
         let both = self.planned.questions.iter().zip(&self.at.drawn.totals);
-        both.filter(|(question, _)| question.check == *name)
+        both.filter(|(question, _)| question.check == check)
             .any(|(question, total)| question.answer.has_failed(total))
     }
 }

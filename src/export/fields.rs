@@ -14,7 +14,7 @@ use std::sync::Arc;
 use fearless_simd::Level;
 
 use super::scene::{Field, Scene};
-use super::{Target, Wishes, single};
+use super::{ExportOptions, Target, single};
 use media::phase::Phase;
 use media::phase::henyey_greenstein::HenyeyGreenstein;
 use media::{Body, Medium, Volume};
@@ -39,7 +39,7 @@ pub(super) struct Reader<'a> {
     /// The renderer.
     pub target: Target,
     /// Form of the scene.
-    pub wishes: &'a Wishes,
+    pub wishes: &'a ExportOptions,
 }
 
 /// Place of a medium, and σ_t of each channel, all of them homogeneous or all of them sampled.

@@ -107,7 +107,7 @@ pub struct Exported {
 
 /// Options of an export.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Wishes {
+pub struct ExportOptions {
     /// Number of cells along the longest side of a field that is sampled. `None` stands for 32 in space and 256 along a
     /// line. A grid keeps its own.
     pub cells: Option<usize>,
@@ -129,7 +129,13 @@ pub fn export(
     cells: Option<usize>,
     out: &Path,
 ) -> Result<Exported, ExportError> {
-    export_with(catalogue, source, target, &Wishes { cells, ..Wishes::default() }, out)
+    export_with(
+        catalogue,
+        source,
+        target,
+        &ExportOptions { cells, ..ExportOptions::default() },
+        out,
+    )
 }
 
 /// Writes a case of a catalogue as a scene into a folder, which is created if it does not exist.
@@ -142,7 +148,7 @@ pub fn export_with(
     catalogue: &Catalogue,
     source: &Source,
     target: Target,
-    wishes: &Wishes,
+    wishes: &ExportOptions,
     out: &Path,
 ) -> Result<Exported, ExportError> {
     let scene = reading::read(catalogue, source, target, wishes)?;

@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 use super::fields::{Fields, Reader, Unsuitable, lobe, one_phase, unread};
 use super::scene::{Channel, Light, Scene, View};
-use super::{ExportError, Target, Wishes, single};
-use crate::case::sweep::What;
+use super::{ExportError, ExportOptions, Target, single};
+use crate::case::sweep::SweptQuantity;
 use crate::case::{Catalogue, Source, forms};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -35,7 +35,7 @@ pub fn read(
     catalogue: &Catalogue,
     source: &Source,
     target: Target,
-    wishes: &Wishes,
+    wishes: &ExportOptions,
 ) -> Result<Scene, ExportError> {
     let case = catalogue.read(source)?;
     let reader = Reader { name: source.name.clone(), target, wishes };
@@ -70,8 +70,10 @@ pub fn read(
     };
     let swept = case.sweep.as_ref().map(|axis| axis.what);
     let varies = match swept {
-        Some(What::Albedo) => !["transmittance", "furnace"].contains(&case.problem.as_str()),
-        Some(What::Density | What::AlbedoScale | What::Contrast) => true,
+        Some(SweptQuantity::Albedo) => {
+            !["transmittance", "furnace"].contains(&case.problem.as_str())
+        }
+        Some(SweptQuantity::Density | SweptQuantity::AlbedoScale | SweptQuantity::Contrast) => true,
         _ => false,
     };
     let checked = scene.and_then(|scene| {

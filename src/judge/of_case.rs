@@ -10,7 +10,7 @@ use crate::case::CaseError;
 use crate::case::Ready;
 use crate::case::catalogue::Catalogue;
 use crate::case::id::EstimatorName;
-use crate::case::sweep::{SweepAxis, Variation, What};
+use crate::case::sweep::{SweepAxis, SweptQuantity, Variation};
 use ::theory::{CountDistribution, Distribution, Prediction};
 use gate::Check;
 use numeric::digits::{number, short};
@@ -299,12 +299,12 @@ impl Point<'_> {
             (None, Some(value)) => {
                 let takes_any = self.case.sweep.is_none()
                     && !choice.nearest
-                    && scenario.depends_on(self.index, What::SamplingScale);
+                    && scenario.depends_on(self.index, SweptQuantity::SamplingScale);
                 if !takes_any {
                     return Err(ChoiceError::NotSwept { case, estimator });
                 }
-                self.allowed(What::Sampling, value)?;
-                Ok(Some((What::Sampling, value)))
+                self.allowed(SweptQuantity::Sampling, value)?;
+                Ok(Some((SweptQuantity::Sampling, value)))
             }
             (Some(axis), None) => {
                 let (what, values) = (axis.what.key(), axis.values.clone());
@@ -323,7 +323,7 @@ impl Point<'_> {
     }
 
     /// Validates a value of the swept quantity.
-    fn allowed(&self, what: What, value: f64) -> Result<(), ChoiceError> {
+    fn allowed(&self, what: SweptQuantity, value: f64) -> Result<(), ChoiceError> {
         if what.allows(value) {
             return Ok(());
         }
@@ -341,7 +341,7 @@ impl Point<'_> {
     }
 
     /// Returns the nearest value of the sweep that is not refused.
-    fn accepted(&self, what: What, value: f64) -> Option<f64> {
+    fn accepted(&self, what: SweptQuantity, value: f64) -> Option<f64> {
         let mut values = self.by_distance(value).into_iter().take(TRIED);
         values.find(|&value| self.prepared(Some((what, value))).is_ok())
     }

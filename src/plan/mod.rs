@@ -14,6 +14,7 @@ pub mod options;
 pub use crate::case::id::ExperimentId;
 pub use options::{Amount, Filter, Options};
 
+use ::gate::CheckId;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::case::sweep::Variation;
@@ -111,11 +112,11 @@ impl<'a> Plan<'a> {
 
     /// Prepares every experiment of the cases.
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
-        Self::heard(cases, options, &|_, _| {})
+        Self::with_progress(cases, options, &|_, _| {})
     }
 
     /// Prepares every experiment of the cases. `listen` receives the number of prepared experiments, and of all.
-    pub fn heard(
+    pub fn with_progress(
         cases: &'a [Case],
         options: &Options,
         listen: &(dyn Fn(usize, usize) + Sync),
@@ -259,7 +260,7 @@ impl Planned {
     /// Returns whether two experiments make the same draws, and have the same questions.
     fn is_same(&self, other: &Self) -> bool {
         let of = |one: &Self| (one.address, one.draws, one.fixed, one.horizon, one.expect_biased);
-        let asked = |one: &Self| one.questions.iter().map(|q| q.check.clone()).collect::<Vec<_>>();
+        let asked = |one: &Self| one.questions.iter().map(|q| q.check).collect::<Vec<_>>();
         self.outcome.is_ok()
             && other.outcome.is_ok()
             && of(self) == of(other)
@@ -308,7 +309,7 @@ impl Planned {
         let is_fixed = options.fixed || is_tight || is_certain;
         self.horizon = if is_fixed { self.draws } else { horizon(self.draws) };
         for question in &mut questions {
-            let counts = question.check == "mean" && !case.allow_underpowered;
+            let counts = question.check == CheckId::Mean && !case.allow_underpowered;
             if counts || options.strict {
                 question.too_weak = Verdict::Inconclusive;
             }

@@ -1,6 +1,7 @@
 //! Options of a run, for all cases.
 
 use crate::case::id::EstimatorName;
+use gate::CheckId;
 use glob::{Pattern, PatternError};
 
 /// Number of draws per experiment if neither the options nor the case give it.
@@ -26,7 +27,7 @@ pub struct Options {
     /// True if each check that is underpowered makes its experiment inconclusive.
     pub strict: bool,
     /// Stop an experiment as soon as the check of this name has failed.
-    pub until_failed: Option<String>,
+    pub until_failed: Option<CheckId>,
     /// Only these experiments.
     pub filter: Option<Filter>,
 }

@@ -11,6 +11,7 @@ use crate::record::{
 };
 use ::theory::parallel;
 use fearless_simd::Level;
+use gate::CheckId;
 use gate::session::Reason;
 use gate::stats::gate::TYPICAL;
 use gate::stats::multiplicity;
@@ -174,17 +175,17 @@ fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord
     evaluate::explain_blocks(&mut record.findings);
     for finding in &mut record.findings {
         let channel = record.channels.iter().find(|channel| finding.is_about(&channel.channel));
-        finding.z = match finding.check.as_str() {
-            "mean" => channel.and_then(|channel| channel.z_mean),
-            "variance" => channel.and_then(|channel| channel.z_variance),
-            "lookups" => record.z_lookups,
+        finding.z = match finding.check {
+            CheckId::Mean => channel.and_then(|channel| channel.z_mean),
+            CheckId::Variance => channel.and_then(|channel| channel.z_variance),
+            CheckId::Lookups => record.z_lookups,
             _ => None,
         };
     }
     for values in &mut record.channels {
         let found = record.findings.iter().filter(|finding| finding.is_about(&values.channel));
         let found: Vec<&Finding> = found.collect();
-        let mean = found.iter().find(|finding| finding.check == "mean");
+        let mean = found.iter().find(|finding| finding.check == CheckId::Mean);
         values.detectable_bias = mean.and_then(|mean| mean.gate).map(|gate| gate.tolerance);
         let (verdict, reason) = worst(&found);
         (values.verdict, values.reason) = (Some(verdict), reason);
@@ -219,7 +220,7 @@ fn complete(results: &mut Results) {
     gate.triage = listed.into_iter().map(|index| suspects[index].clone()).collect();
     let means = || cases.iter().flat_map(CaseRecord::rows).flat_map(|row| row.findings());
     let passed = |finding: &&Finding| {
-        finding.check == "mean" && finding.verdict == Verdict::Pass && !finding.expects_bias
+        finding.check == CheckId::Mean && finding.verdict == Verdict::Pass && !finding.expects_bias
     };
     let assumed = Reason::VarianceAssumed.to_string();
     gate.variance_assumed = means().filter(passed).filter(|f| f.reason == assumed).count();
@@ -247,12 +248,12 @@ fn suspect(case: &CaseRecord, row: &Row, finding: &Finding) -> Suspect {
         experiment = format!("{experiment}, {}", finding.channel);
     }
     let ln_e = finding.gate.map_or(0.0, |gate| gate.ln_e);
-    Suspect { case: case.name.clone(), experiment, check: finding.check.clone(), ln_e }
+    Suspect { case: case.name.clone(), experiment, check: finding.check, ln_e }
 }
 
 /// Returns the range of ε over the means for which a pass was promised.
 fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
-    let means = case.rows().flat_map(|row| row.findings()).filter(|f| f.check == "mean");
+    let means = case.rows().flat_map(|row| row.findings()).filter(|f| f.check == CheckId::Mean);
     let promised = means.filter_map(|finding| finding.gate.filter(|gate| gate.needed.is_none()));
     let tolerances: Vec<f64> = promised.map(|gate| gate.tolerance).collect();
     let least = tolerances.iter().copied().reduce(f64::min)?;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::case::id::ExperimentId;
-use crate::case::sweep::{SweepAxis, Variation, What};
+use crate::case::sweep::{SweepAxis, SweptQuantity, Variation};
 use crate::draw::block::DrawnExperiment;
 use crate::plan::{Planned, PlannedCase};
 use crate::record::theory::finite;
@@ -141,14 +141,14 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
         let predicted: Vec<Vec<(String, Option<CurvePoint>)>> =
             parallel::map(&x, |&x| points(case, seed, estimator, Some((axis.what, x)), x));
         let id = case.id(estimator, axis.values.first().map(|&x| (axis.what, x)));
-        let is_sought = axis.what == What::Sampling;
+        let is_sought = axis.what == SweptQuantity::Sampling;
         let best = is_sought.then(|| best(case, seed, estimator, None));
         let found = |channel: usize| best.as_ref()?.get(channel).copied().flatten();
         let optimum = |channel: usize| {
             let at = found(channel)?.sampling;
             let mut points = (low..=high)
                 .contains(&at)
-                .then(|| points(case, seed, estimator, Some((What::Sampling, at)), at))?;
+                .then(|| points(case, seed, estimator, Some((SweptQuantity::Sampling, at)), at))?;
             (channel < points.len()).then(|| points.swap_remove(channel).1)?
         };
         let named = predicted.iter().max_by_key(|channels| channels.len());
@@ -181,8 +181,9 @@ pub fn best_of_each<'p>(
 ) -> Vec<(&'p Planned, Vec<Option<Optimum>>)> {
     // Experiments that differ in σ̂ only have the same best σ̂.
     let asked = |planned: &Planned| {
-        let is_of_sampling =
-            |(what, _): &(What, f64)| matches!(what, What::Sampling | What::SamplingScale);
+        let is_of_sampling = |(what, _): &(SweptQuantity, f64)| {
+            matches!(what, SweptQuantity::Sampling | SweptQuantity::SamplingScale)
+        };
         (planned.estimator, planned.id.variation().filter(|variation| !is_of_sampling(variation)))
     };
     let mut questions: Vec<_> = case.experiments.iter().map(asked).collect();
@@ -199,7 +200,7 @@ pub fn best_of_each<'p>(
 
 /// Returns the best constant σ̂ of one experiment, channel by channel.
 fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<Option<Optimum>> {
-    if !case.scenario.depends_on(estimator, What::SamplingScale) {
+    if !case.scenario.depends_on(estimator, SweptQuantity::SamplingScale) {
         return Vec::new();
     }
     let pilots = case.pilots(seed, estimator);
@@ -254,7 +255,7 @@ fn points(
 fn abscissae(axis: &SweepAxis) -> Vec<f64> {
     let (low, high) = ends(&axis.values);
     let mut x = axis.values.clone();
-    if axis.what != What::Points {
+    if axis.what != SweptQuantity::Points {
         x.extend((0..POINTS).map(|i| {
             let u = i as f64 / (POINTS - 1) as f64;
             if axis.log { low * (high / low).powf(u) } else { low + (high - low) * u }

@@ -16,6 +16,7 @@ use crate::plan::{Plan, Planned};
 use crate::record::{Finding, Verdict};
 use checks::check::{Context, Look, Total};
 use checks::{Inspected, Question};
+use gate::CheckId;
 use gate::deviation::Deviation;
 use gate::session::{self, Reason};
 use gate::stats::multiplicity;
@@ -42,9 +43,9 @@ pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
 }
 
 /// Returns a finding without a result.
-fn blank(check: &str, what: &str, channel: String) -> Finding {
+fn blank(check: CheckId, what: &str, channel: String) -> Finding {
     Finding {
-        check: check.to_owned(),
+        check,
         what: what.to_owned(),
         expects_bias: false,
         channel,
@@ -63,7 +64,7 @@ fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
     let DrawnExperiment { planned, drawn, .. } = of;
     if drawn.draws == 0 {
         let reason = "the limit of time or draws came before the first draw".to_owned();
-        return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
+        return vec![Finding { reason, ..blank(CheckId::Mean, "the mean", String::new()) }];
     }
     let Ok(ready) = &planned.outcome else { return Vec::new() };
     let both = planned.questions.iter().zip(&drawn.totals);
@@ -119,7 +120,7 @@ fn finding(
         block: found.block,
         verdict: found.verdict,
         reason: found.reason.map_or(String::new(), |reason| reason.to_string()),
-        ..blank(&question.check, &question.what, channel)
+        ..blank(question.check, &question.what, channel)
     }
 }
 
@@ -146,12 +147,13 @@ fn judge_distributions(plan: &Plan, findings: &mut [&mut Finding]) {
 /// too small, a mean that is off only in units of that variance does not fail: with the spread of the draws it would
 /// not.
 fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
-    let variances = findings.iter().filter(|f| f.check == "variance" && f.verdict != Verdict::Pass);
+    let variances =
+        findings.iter().filter(|f| f.check == CheckId::Variance && f.verdict != Verdict::Pass);
     let variances: Vec<Finding> = variances.cloned().collect();
     let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
     let is_piloted =
         |name: &str| channels.iter().any(|c| c.pilot_variance_allowed && c.name == name);
-    for mean in findings.iter_mut().filter(|finding| finding.check == "mean") {
+    for mean in findings.iter_mut().filter(|finding| finding.check == CheckId::Mean) {
         let variance = variances.iter().find(|variance| variance.channel == mean.channel);
         let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {
             (Verdict::Pass, Some(variance)) if variance.verdict != Verdict::Underpowered => {
@@ -174,16 +176,17 @@ fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
 /// Adds the cause to blocks and streams that differ from theory if the mean or the variance fails: the difference is
 /// then no evidence of a dependence.
 pub fn explain_blocks(findings: &mut [Finding]) {
-    let fails = |check: &str| {
+    let fails = |check: CheckId| {
         findings.iter().any(|found| found.check == check && found.verdict == Verdict::Fail)
     };
-    let cause = match [fails("mean"), fails("variance")] {
+    let cause = match [fails(CheckId::Mean), fails(CheckId::Variance)] {
         [true, _] => "the mean is off",
         [_, true] => "the variance is off",
         _ => return,
     };
     let blocks = findings.iter_mut().filter(|found| {
-        ["dispersion", "streams"].contains(&found.check.as_str()) && found.verdict == Verdict::Fail
+        matches!(found.check, CheckId::Dispersion | CheckId::Streams)
+            && found.verdict == Verdict::Fail
     });
     for found in blocks {
         found.reason = format!("{}, which follows where {cause}", found.reason);
@@ -198,9 +201,10 @@ fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
 
 /// Counts a declared bias as shown if one point of a curve shows it.
 fn show_anywhere(findings: &mut [Finding]) {
-    let shown = |finding: &Finding| finding.check == "mean" && finding.verdict == Verdict::Pass;
+    let shown =
+        |finding: &Finding| finding.check == CheckId::Mean && finding.verdict == Verdict::Pass;
     if findings.iter().any(shown) {
-        for finding in findings.iter_mut().filter(|finding| finding.check == "mean") {
+        for finding in findings.iter_mut().filter(|finding| finding.check == CheckId::Mean) {
             if finding.verdict != Verdict::Pass {
                 finding.verdict = Verdict::Pass;
                 finding.reason = Reason::BiasedElsewhere.to_string();

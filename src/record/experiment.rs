@@ -1,5 +1,6 @@
 //! Results of an experiment: its identity, its channels, and the findings of the checks.
 
+use gate::CheckId;
 use numeric::Grade;
 use serde::{Deserialize, Serialize};
 
@@ -191,13 +192,18 @@ impl Score {
     /// All scores.
     pub const ALL: [Self; 3] = [Self::Mean, Self::Variance, Self::Lookups];
 
+    /// Returns the check of the quantity.
+    pub fn check(self) -> CheckId {
+        match self {
+            Self::Mean => CheckId::Mean,
+            Self::Variance => CheckId::Variance,
+            Self::Lookups => CheckId::Lookups,
+        }
+    }
+
     /// Returns the name of the quantity.
     pub fn quantity(self) -> &'static str {
-        match self {
-            Self::Mean => "mean",
-            Self::Variance => "variance",
-            Self::Lookups => "lookups",
-        }
+        self.check().name()
     }
 
     /// Returns the name of its column in files.
@@ -213,8 +219,8 @@ impl Score {
 /// Finding of one check about one experiment.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Finding {
-    /// The check's name in the catalogue.
-    pub check: String,
+    /// The check.
+    pub check: CheckId,
     /// The quantity, as in `the mean`.
     pub what: String,
     /// True if the case declares a bias that the check must show.

@@ -19,6 +19,7 @@ pub(crate) mod repeat;
 pub mod scores;
 mod theory;
 
+use gate::CheckId;
 use std::collections::BTreeMap;
 use std::ops::Deref;
 
@@ -104,7 +105,7 @@ pub struct Suspect {
     /// Label of the experiment, with the swept value and the channel.
     pub experiment: String,
     /// The check.
-    pub check: String,
+    pub check: CheckId,
     /// ln of its e-value.
     #[serde(with = "gate::extended")]
     pub ln_e: f64,

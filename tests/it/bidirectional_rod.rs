@@ -3,6 +3,7 @@
 
 use crate::common::{none, row, rows};
 use serde::Deserialize;
+use trueflight::gate::CheckId;
 use trueflight::numeric::Known;
 use trueflight::record::Verdict;
 use trueflight::theory::Prediction;
@@ -269,13 +270,18 @@ fn draws_meet_means_variances_covariances_and_lookups() {
             if !is_sound {
                 wrong.push(format!("{} {}: {}", row.experiment.label, row.channel, row.reason));
             }
-            let asked = |check: &str| row.findings().any(|finding| finding.check == check);
-            assert!(asked("mean") && asked("variance"), "{} {}", row.experiment.label, row.channel);
+            let asked = |check: CheckId| row.findings().any(|finding| finding.check == check);
+            assert!(
+                asked(CheckId::Mean) && asked(CheckId::Variance),
+                "{} {}",
+                row.experiment.label,
+                row.channel
+            );
         }
-        let asked = |check: &str| {
+        let asked = |check: CheckId| {
             found.iter().flat_map(trueflight::record::Row::findings).any(|f| f.check == check)
         };
-        assert!(asked("lookups") && asked("covariance"));
+        assert!(asked(CheckId::Lookups) && asked(CheckId::Covariance));
         none(&wrong);
     }
 }
@@ -296,8 +302,12 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
             let is_sum = shared.channel == "sum";
             assert_eq!(alone.truth, shared.truth);
             assert_eq!(shared.predicted_variance.is_none(), is_sum);
-            let asked = |check: &str| shared.findings().any(|f| f.check == check);
-            assert!(asked("mean") && !asked("covariance") && asked("variance") != is_sum);
+            let asked = |check: CheckId| shared.findings().any(|f| f.check == check);
+            assert!(
+                asked(CheckId::Mean)
+                    && !asked(CheckId::Covariance)
+                    && asked(CheckId::Variance) != is_sum
+            );
         }
         // Two walks in all, not two for each technique.
         assert!(shared[0].experiment.lookups_per_draw < alone[0].experiment.lookups_per_draw);

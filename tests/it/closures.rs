@@ -4,6 +4,7 @@ use trueflight::OfCase;
 use trueflight::case::Case;
 use trueflight::case::Source;
 use trueflight::check::CheckError;
+use trueflight::gate::CheckId;
 use trueflight::judge::Choice;
 use trueflight::rng::Stream;
 use trueflight::stats::verdict::Verdict;
@@ -45,7 +46,7 @@ fn lookups_are_judged_where_they_are_told() {
     };
     let honest = with(|r| 1.0 - r).expect("a verdict");
     assert_eq!(honest.verdict(), Verdict::Pass, "{honest}");
-    assert!(honest.values[0].finding("lookups").is_some(), "{honest}");
+    assert!(honest.values[0].finding(CheckId::Lookups).is_some(), "{honest}");
     // Draws with doubled lookups.
     let twice = check("twice", |rng| {
         let (weight, lookups) = ratio_of(rng, 1.3, |r| 1.0 - r);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use trueflight::case::Case;
-use trueflight::case::sweep::{Variation, What};
+use trueflight::case::sweep::{SweptQuantity, Variation};
 use trueflight::catalogue::{Domain, OwnPage, Page, Settings};
 use trueflight::estimators::multiple_scattering::particle::Walker;
 use trueflight::estimators::own::estimator;
@@ -267,7 +267,7 @@ fn an_own_medium_is_swept_by_the_settings_that_its_page_names() {
             .replace("sampling = 2", &format!("sampling = {sampling}"))
             .replace("strength = 0.5", &format!("strength = {control}"));
         let written = veiled(&[], fade, &written).expect("a case");
-        let swept = theory(&case, Some((What::Density, value)));
+        let swept = theory(&case, Some((SweptQuantity::Density, value)));
         assert_eq!(swept, theory(&written, None), "{value}");
     }
 }

@@ -195,7 +195,7 @@ fn through(light: Light, pieces: Vec<Piece>) -> Walk {
         depth: 1.0,
         largest_ratio: 2.0,
         pieces: Pieces::Exact(pieces),
-        laws: true,
+        with_distributions: true,
     }
 }
 
@@ -380,7 +380,7 @@ fn variances_and_kurtoses_of_lookups_are_those_of_the_references() {
             depth,
             largest_ratio: layers.iter().map(|layer| layer[1]).fold(0.0, f64::max),
             pieces: Pieces::Exact(layers.iter().map(|&[flown, r]| Piece::of(flown, r)).collect()),
-            laws: true,
+            with_distributions: true,
         };
         let truth = cached(&walk.incidence, Known::exact(depth), a).expect("finite");
         let law = walk.predict(&truth).lookups.expect("r is constant in each layer");

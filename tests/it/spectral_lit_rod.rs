@@ -2,6 +2,7 @@
 //! by hand, and against draws; and the algorithms as printed.
 
 use std::fmt::Write;
+use trueflight::gate::CheckId;
 
 use serde::Deserialize;
 use trueflight::estimators::DrawBuffer;
@@ -265,7 +266,7 @@ fn draws_agree(draws: u64) {
     // Five channels with bounded variances need more draws.
     let more = |text: &String| if text.contains("five extinctions") { 4 } else { 1 };
     let all: Vec<Row> = texts.iter().flat_map(|text| rows(text, more(text) * draws)).collect();
-    none(&not_passing(&all, &["mean", "lookups"]));
+    none(&not_passing(&all, &[CheckId::Mean, CheckId::Lookups]));
     let mut told = String::new();
     for (what, (square, count)) in ["means", "variances", "lookups"].iter().zip(mean_squares(&all))
     {
@@ -313,7 +314,7 @@ fn hits_of_all_heroes_remove_colour_noise_only() {
 #[test]
 fn the_algorithm_as_printed_is_biased() {
     let rows = rows(AS_PRINTED, 1_000_000);
-    none(&not_passing(&rows, &["mean", "lookups"]));
+    none(&not_passing(&rows, &[CheckId::Mean, CheckId::Lookups]));
     let simulated =
         [("last-piece", [-0.0349, 0.0165, 0.0476]), ("one-phase", [-0.0302, 0.0597, 0.0440])];
     for (estimator, biases) in simulated {
@@ -326,7 +327,7 @@ fn the_algorithm_as_printed_is_biased() {
                 (bias - expected).abs() < 0.0004 + 4.0 * error,
                 "{bias} ± {error} for {expected}"
             );
-            assert_eq!(finding(row, "mean").verdict, Verdict::Pass);
+            assert_eq!(finding(row, CheckId::Mean).verdict, Verdict::Pass);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The gate: passes, failures, runs that are too short, and experiments that are not drawn.
 
 use crate::common::{case, finding, judged, options, row, rows, verdict};
+use trueflight::gate::CheckId;
 use trueflight::record::Record;
 use trueflight::record::{Results, Score, Verdict};
 use trueflight::report::layout::Pen;
@@ -44,7 +45,7 @@ fn a_biased_estimator_that_claims_to_be_fair_is_caught() {
     );
     for row in &rows {
         assert_eq!(verdict(row), Verdict::Fail, "{}", row.experiment.label);
-        assert_eq!(finding(row, "mean").verdict, Verdict::Fail);
+        assert_eq!(finding(row, CheckId::Mean).verdict, Verdict::Fail);
         assert!(row.reason.contains("off by"), "{}", row.reason);
     }
 }
@@ -91,7 +92,7 @@ fn a_run_that_is_too_short_says_how_long_it_should_be() {
     // The number is rounded to two digits; slightly more than that is enough.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of draws")]
     let enough = rows(&text, (1.1 * needed) as u64);
-    assert_eq!(finding(&enough[0], "mean").verdict, Verdict::Pass);
+    assert_eq!(finding(&enough[0], CheckId::Mean).verdict, Verdict::Pass);
 }
 
 #[test]
@@ -103,9 +104,9 @@ fn a_case_may_allow_what_is_too_short() {
 #[test]
 fn a_tighter_tolerance_needs_more_draws() {
     let text = transmittance("{ ratio = {} }");
-    assert_eq!(finding(&rows(&text, 200_000)[0], "mean").verdict, Verdict::Pass);
+    assert_eq!(finding(&rows(&text, 200_000)[0], CheckId::Mean).verdict, Verdict::Pass);
     let tight = format!("{text}\n[tolerance]\nmean = 1e-5");
-    assert_eq!(finding(&rows(&tight, 200_000)[0], "mean").verdict, Verdict::Inconclusive);
+    assert_eq!(finding(&rows(&tight, 200_000)[0], CheckId::Mean).verdict, Verdict::Inconclusive);
 }
 
 #[test]

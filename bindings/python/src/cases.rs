@@ -8,7 +8,7 @@ use trueflight::case::Catalogue;
 use trueflight::case::Source;
 use trueflight::case::Spec;
 use trueflight::case::suite;
-use trueflight::case::sweep::What;
+use trueflight::case::sweep::SweptQuantity;
 use trueflight::catalogue::own_pages;
 
 use crate::error::Failure;
@@ -88,13 +88,13 @@ fn from_json(text: &str) -> Result<String, Failure> {
 }
 
 /// Returns whether any estimator of a case depends on the swept quantity.
-fn depends(case: &Case, what: What) -> bool {
+fn depends(case: &Case, what: SweptQuantity) -> bool {
     (0..case.scenario.estimators()).any(|estimator| case.scenario.depends_on(estimator, what))
 }
 
 /// Returns the error that no estimator depends on the swept quantity, with others that could be swept instead.
 fn idle(spec: &Spec, key: &str) -> Failure {
-    let could = What::all().filter(|&what| {
+    let could = SweptQuantity::all().filter(|&what| {
         let swept = spec.with_sweep(what.key(), &[1.0]).and_then(|spec| Case::of(&spec));
         swept.is_ok_and(|case| depends(&case, what))
     });

@@ -12,6 +12,7 @@
 //! of check: a quantity for the gate ([`super::scalar`]), a p-value ([`super::distribution`]), a bound on every draw
 //! ([`super::always`]), an inspection of the streams ([`super::distribution::Inspection`]).
 
+use gate::CheckId;
 use serde::{Deserialize, Serialize};
 
 use super::batch::Batch;
@@ -68,8 +69,8 @@ impl Pilot {
 
 /// Question about the draws of an experiment.
 pub struct Question {
-    /// Name of its check.
-    pub check: String,
+    /// Its check; the catalogue sets it.
+    pub check: CheckId,
     /// Channel; `None` for the experiment as a whole.
     pub channel: Option<usize>,
     /// Name of its subject, as in `the mean`.
@@ -96,7 +97,7 @@ impl Question {
     /// Returns a question about one channel.
     pub fn channel(channel: usize, what: &str, answer: Box<dyn Check>) -> Self {
         Self {
-            check: String::new(),
+            check: CheckId::Mean,
             channel: Some(channel),
             what: what.to_owned(),
             answer,

@@ -7,6 +7,7 @@
 //! It applies to problems with several channels, and is reported with the farther one. Consecutive channels are enough:
 //! increments over disjoint stretches are uncorrelated, so these covariances determine all others.
 
+use gate::CheckId;
 use std::panic::AssertUnwindSafe;
 
 use super::batch::{Batch, Observe};
@@ -112,7 +113,8 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Asked> {
     let unit = scale[0] * scale[1];
     let known = covariance.variance * unit * unit;
     let scalar = (known.is_finite() && known > 0.0).then(|| {
-        let quantity = Quantity::new(what.clone(), variance(known, ERROR), ERROR, CAP);
+        let quantity =
+            Quantity::new(CheckId::Covariance, what.clone(), variance(known, ERROR), ERROR, CAP);
         let ([i, j], truth) = (covariance.pair, [first.mean.value, second.mean.value]);
         let expected = covariance.value * unit;
         let observe =

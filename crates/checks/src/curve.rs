@@ -16,6 +16,7 @@ use super::check::{Question, Subject, rounding_of};
 use super::distribution::DistributionTest;
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::session::Quantity;
 use gate::session::quantity::MEAN_CAP;
 use gate::stats::{chi_square, normal};
@@ -152,7 +153,7 @@ fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Sc
     };
     // A bias of an increment counts as much as one of the mean.
     let ground = variance(increment.variance, increment.error);
-    let step = Quantity::new(STEP, ground, rounding_of(subject), MEAN_CAP);
+    let step = Quantity::new(CheckId::Curve, STEP, ground, rounding_of(subject), MEAN_CAP);
     let step = step.within(subject.tolerance.mean);
     Scalar::new(subject, step, Observe::Draw(Box::new(observe)))
 }

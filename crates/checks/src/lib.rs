@@ -29,6 +29,7 @@ pub mod scalar;
 pub mod streams;
 pub mod variance;
 
+use gate::CheckId;
 use media::catalogue::PageList;
 
 pub use batch::Observe;
@@ -56,6 +57,8 @@ impl Tolerance {
 
 /// Page of the catalogue of checks.
 struct Page {
+    /// The check.
+    id: CheckId,
     /// Returns its questions about an experiment; none where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
     /// True if it also applies to experiments that a case declares biased.
@@ -65,8 +68,8 @@ struct Page {
 }
 
 impl Page {
-    const fn new(questions: fn(&Subject) -> Vec<Question>) -> Self {
-        Self { questions, of_biased: false, is_uniform: true }
+    const fn new(id: CheckId, questions: fn(&Subject) -> Vec<Question>) -> Self {
+        Self { id, questions, of_biased: false, is_uniform: true }
     }
 
     /// Applies the check to experiments that a case declares biased, too.
@@ -82,54 +85,59 @@ impl Page {
 
 /// Returns all questions of all checks, in the order of the catalogue.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let pages = CATALOGUE.pages.iter().zip(ALL);
-    let asking = pages.filter(|(_, check)| check.of_biased || !subject.expect_biased);
-    let asked = asking.flat_map(|(page, check)| {
-        let check_name = page.name();
-        let expects_bias = subject.expect_biased && check_name == "mean";
-        let questions = (check.questions)(subject).into_iter();
-        questions.map(move |question| Question {
-            check: check_name.clone(),
-            expects_bias,
-            ..question
-        })
+    let asking = ALL.iter().filter(|page| page.of_biased || !subject.expect_biased);
+    let asked = asking.flat_map(|page| {
+        let expects_bias = subject.expect_biased && page.id == CheckId::Mean;
+        let questions = (page.questions)(subject).into_iter();
+        questions.map(move |question| Question { check: page.id, expects_bias, ..question })
     });
     asked.collect()
 }
 
-/// Returns whether the p-values of the check of that name are uniform for correct draws.
-pub fn is_uniform(name: &str) -> bool {
-    let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
-    named.is_some_and(|(_, check)| check.is_uniform)
+/// Returns whether the p-values of a check are uniform for correct draws.
+pub fn is_uniform(check: CheckId) -> bool {
+    ALL.iter().any(|page| page.id == check && page.is_uniform)
 }
 
-/// Lists the checks: each line gives the name, the row in `list`, and the experiments to which the check applies.
+/// Lists the checks: each line gives the module, which is the row in `list`, the check, and the experiments to which the check applies.
 macro_rules! checks {
-    ($($module:ident $($how:ident)*,)*) => {
+    ($($module:ident $Id:ident $($how:ident)*,)*) => {
         /// Every check, in the order of registration.
         pub const CATALOGUE: PageList =
             PageList { name: "checks", pages: &[$(media::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
-        const ALL: &[Page] = &[$(Page::new($module::questions)$(.$how())*),*];
+        const ALL: &[Page] = &[$(Page::new(CheckId::$Id, $module::questions)$(.$how())*),*];
     };
 }
 
 checks! {
-    mean of_biased,
-    variance,
-    lookups of_biased,
-    covariance,
-    counts of_biased,
+    mean Mean of_biased,
+    variance Variance,
+    lookups Lookups of_biased,
+    covariance Covariance,
+    counts Counts of_biased,
     // Two values have an exact binomial distribution, which has discrete p-values.
-    atoms not_uniform,
-    distances,
-    depth,
-    curve not_uniform,
-    dispersion,
-    streams,
-    generator not_uniform,
-    resolution not_uniform,
-    invariant,
-    numeric of_biased,
+    atoms Atoms not_uniform,
+    distances Distances,
+    depth Depth,
+    curve Curve not_uniform,
+    dispersion Dispersion,
+    streams Streams,
+    generator Generator not_uniform,
+    resolution Resolution not_uniform,
+    invariant Invariant,
+    numeric Numeric of_biased,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_have_the_names_of_their_checks() {
+        let names: Vec<String> = CATALOGUE.pages.iter().map(media::catalogue::Page::name).collect();
+        assert_eq!(names, ALL.iter().map(|page| page.id.name()).collect::<Vec<_>>());
+        assert_eq!(names, CheckId::ALL.iter().map(|id| id.name()).collect::<Vec<_>>());
+    }
 }

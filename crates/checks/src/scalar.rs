@@ -2,8 +2,9 @@
 
 use super::batch::{Batch, Observe};
 use super::check::{Check, Context, Found, Look, Observer, Place, Share, Subject, Total};
+use gate::CheckId;
 use gate::deviation::signed_percent;
-use gate::session::{BlockSums, Ground, Planned, Quantity, Reason, Trail};
+use gate::session::{BlockSums, Planned, Quantity, Reason, Trail, VarianceBound};
 use gate::stats::gate::Decision;
 use gate::stats::verdict::BLOCK;
 use numeric::digits::short;
@@ -19,8 +20,8 @@ pub struct Scalar {
 }
 
 /// Returns the ground for an upper bound of a variance: the variance and its relative error bound.
-pub fn variance(variance: f64, error: f64) -> Option<Ground> {
-    Some(Ground::Variance(variance * (1.0 + error)))
+pub fn variance(variance: f64, error: f64) -> Option<VarianceBound> {
+    Some(VarianceBound::Variance(variance * (1.0 + error)))
 }
 
 impl Scalar {
@@ -33,7 +34,7 @@ impl Scalar {
     fn remark(&self, trail: &Trail, log_unit: f64) -> String {
         let Quantity { check, expected, scale, .. } = self.planned.quantity;
         let mut text = String::new();
-        if check != "mean" {
+        if check != CheckId::Mean {
             return text;
         }
         if (scale - expected.abs()).abs() > 1e-9 * scale {

@@ -14,7 +14,7 @@ use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::mean::is_faint;
 use super::scalar::Scalar;
 use gate::session::quantity::{variance_floor, variance_of_squares};
-use gate::session::{Ground, Quantity};
+use gate::session::{Quantity, VarianceBound};
 use theory::Channel;
 
 /// A kurtosis this close to 1 makes `(X − E[X])²` constant: there is nothing left to test.
@@ -47,7 +47,7 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Option<Box<dyn 
     }
     let rounding = rounding_of(subject) * channel.truth.value.abs();
     let floor = variance_floor(variance, moments.error, rounding);
-    let of_squares = Ground::Variance(variance_of_squares(kurtosis, moments.error));
+    let of_squares = VarianceBound::Variance(variance_of_squares(kurtosis, moments.error));
     let (mean, scale) = (channel.mean.value, 1.0 / variance.sqrt());
     let observe = Observe::each_value(
         index,

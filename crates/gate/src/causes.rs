@@ -3,6 +3,8 @@
 //! A pattern says which checks failed, and on which side. The causes of a pattern are the frequent kinds among the
 //! known bugs (`trueflight-lab self-test`) with this pattern. They are likely, not certain.
 
+use crate::CheckId;
+
 /// The side on which a quantity deviates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Side {
@@ -101,19 +103,22 @@ pub struct Pattern {
 
 impl Pattern {
     /// Adds a check that failed; `off` is the deviation, where the check has one.
-    pub fn note(&mut self, check: &str, off: Option<f64>) {
+    pub fn note(&mut self, check: CheckId, off: Option<f64>) {
         match check {
-            "mean" => self.mean.note(off),
-            "variance" => self.variance.note(off),
-            "lookups" => self.lookups.note(off),
-            "counts" if self.lookups == Side::Right => self.lookups = Side::Both,
-            "covariance" | "curve" => self.curve = true,
-            "atoms" | "distances" | "depth" => self.distribution = true,
-            "invariant" => self.balance = true,
-            "numeric" => self.number = true,
-            "dispersion" | "streams" | "generator" => self.dependence = true,
-            "resolution" => self.resolution = true,
-            _ => {}
+            CheckId::Mean => self.mean.note(off),
+            CheckId::Variance => self.variance.note(off),
+            CheckId::Lookups => self.lookups.note(off),
+            CheckId::Counts => {
+                if self.lookups == Side::Right {
+                    self.lookups = Side::Both;
+                }
+            }
+            CheckId::Covariance | CheckId::Curve => self.curve = true,
+            CheckId::Atoms | CheckId::Distances | CheckId::Depth => self.distribution = true,
+            CheckId::Invariant => self.balance = true,
+            CheckId::Numeric => self.number = true,
+            CheckId::Dispersion | CheckId::Streams | CheckId::Generator => self.dependence = true,
+            CheckId::Resolution => self.resolution = true,
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub mod causes;
 pub mod check;
+pub mod check_id;
 pub mod deviation;
 #[cfg(feature = "serde")]
 pub mod extended;
@@ -9,6 +10,8 @@ pub mod session;
 pub mod stats;
 
 pub use numeric::rng;
+
+pub use check_id::CheckId;
 
 pub use check::{Check, Gate, check, check_with, claim};
 

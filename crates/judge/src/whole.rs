@@ -14,10 +14,11 @@
 //! notice how many of them rounding moves across the ends of classes. Resolutions of 22 bits or of single precision
 //! count as fine; coarser ones fail, and finer ones are reported.
 
+use gate::CheckId;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::{Asked, Distribution, DistributionFinding, Reason, Tested, Tests};
+use super::{Distribution, DistributionFinding, Reason, TestRequest, Tested, Tests};
 use checks::batch::Batch;
 use checks::resolution::{self, Resolution};
 use checks::{self, DistributionTest};
@@ -44,7 +45,7 @@ const HARMLESS: f64 = 0.05;
 pub struct Known(pub Arc<Prediction>);
 
 impl Distribution for Known {
-    fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String> {
+    fn tests(&self, asked: TestRequest) -> Result<Box<dyn Tests>, String> {
         let Prediction { distribution, increments, channels, .. } = &*self.0;
         let has_values = distribution.is_some() || !increments.is_empty();
         let is_known =
@@ -54,11 +55,11 @@ impl Distribution for Known {
             return Err(why);
         }
         let next = asked.length.unwrap_or(FIRST);
-        Ok(Box::new(Whole {
+        Ok(Box::new(DistributionTests {
             prediction: Arc::clone(&self.0),
             asked,
             tests: None,
-            fine: Fineness::of(&self.0),
+            fine: TieTest::of(&self.0),
             ties: Found::default(),
             untested: Vec::new(),
             seen: 0,
@@ -71,7 +72,7 @@ impl Distribution for Known {
 
 /// A test by sums over draws.
 struct Test {
-    check: &'static str,
+    check: CheckId,
     what: Cow<'static, str>,
     distribution: Box<dyn DistributionTest>,
     sums: Vec<f64>,
@@ -82,7 +83,7 @@ struct Test {
 
 impl Test {
     fn new(
-        check: &'static str,
+        check: CheckId,
         what: impl Into<Cow<'static, str>>,
         distribution: impl DistributionTest + 'static,
         between: [f64; 2],
@@ -108,12 +109,12 @@ struct Found {
 }
 
 /// All tests of a distribution.
-struct Whole {
+struct DistributionTests {
     prediction: Arc<Prediction>,
-    asked: Asked,
+    asked: TestRequest,
     /// Tests, made with the first draws, which show their precision.
     tests: Option<Vec<Test>>,
-    fine: Option<Fineness>,
+    fine: Option<TieTest>,
     /// Result of the test of ties.
     ties: Found,
     untested: Vec<String>,
@@ -124,7 +125,7 @@ struct Whole {
     buffer: DrawBuffer,
 }
 
-impl Tests for Whole {
+impl Tests for DistributionTests {
     fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]) {
         let Some(values) = columns.first() else { return };
         if self.tests.is_none() && !values.is_empty() {
@@ -147,7 +148,7 @@ impl Tests for Whole {
     fn close(mut self: Box<Self>) -> Tested {
         let tests = self.tests.take().unwrap_or_default();
         let ties = std::mem::take(&mut self.ties);
-        let fine = self.fine.take().map(|_| ("resolution", Cow::Borrowed(RESOLUTION), ties));
+        let fine = self.fine.take().map(|_| (CheckId::Resolution, Cow::Borrowed(RESOLUTION), ties));
         let n = self.seen as f64;
         let (rounded, tests): (Vec<_>, Vec<_>) =
             tests.into_iter().partition(|test| test.found.p.is_none() && n > test.between[1]);
@@ -167,7 +168,7 @@ impl Tests for Whole {
             let differs =
                 || Reason::Differs { what: what.clone(), p: short(p, 2), details: details.clone() };
             let reason = is_refuted.then(differs);
-            let (check, what) = (check.to_owned(), what.into_owned());
+            let what = what.into_owned();
             findings.push(DistributionFinding { check, what, verdict, reason, p, draws });
         }
         if !few.is_empty() {
@@ -198,19 +199,24 @@ fn listed(things: &[Cow<str>]) -> String {
     }
 }
 
-impl Whole {
+impl DistributionTests {
     /// Returns the tests for draws of that precision.
     fn prepared(&mut self, is_single: bool) -> Vec<Test> {
         let prediction = Arc::clone(&self.prediction);
-        let Asked { rounding, has_lookups, length, values, .. } = self.asked;
+        let TestRequest { rounding, has_lookups, length, values, .. } = self.asked;
         let mut tests = Vec::new();
         let always = [0.0, f64::INFINITY];
         if let Some(counts) = checks::counts::of(&prediction).filter(|_| has_lookups) {
-            tests.push(Test::new("counts", "the distribution of the lookups", counts, always));
+            tests.push(Test::new(
+                CheckId::Counts,
+                "the distribution of the lookups",
+                counts,
+                always,
+            ));
         }
         let draws = length.unwrap_or(COVARIANCE_DRAWS);
         for (what, covariance) in checks::covariance::of(&prediction, draws, values) {
-            tests.push(Test::new("covariance", what, covariance, always));
+            tests.push(Test::new(CheckId::Covariance, what, covariance, always));
         }
         if values != prediction.channels.len() {
             return tests;
@@ -218,7 +224,12 @@ impl Whole {
         let product = if is_single { SINGLE_PRODUCT } else { 0.0 }.max(rounding);
         match checks::atoms::of(&prediction, product.max(checks::atoms::SAME)) {
             Ok(Some(atoms)) => {
-                tests.push(Test::new("atoms", "the distribution of the values", atoms, always));
+                tests.push(Test::new(
+                    CheckId::Atoms,
+                    "the distribution of the values",
+                    atoms,
+                    always,
+                ));
             }
             Ok(None) => {}
             Err(why) => {
@@ -230,18 +241,19 @@ impl Whole {
         let between = [0.0, most_draws(&prediction, position)];
         if let Some(classes) = checks::distances::of(&prediction) {
             let what = "the distribution of the distances";
-            tests.push(Test::new("distances", what, classes, between));
+            tests.push(Test::new(CheckId::Distances, what, classes, between));
         }
         if let Some(tails) = checks::depth::of(&prediction) {
             let what = "the distribution of the distances near both ends";
-            tests.push(Test::new("depth", what, tails, between));
+            tests.push(Test::new(CheckId::Depth, what, tails, between));
         }
         if let Some(least) = checks::curve::needed(&prediction) {
             let most = length.unwrap_or(MAX_DRAWS);
             let curve = checks::curve::of(&prediction, most, product.max(16.0 * f64::EPSILON));
             let what = "the distribution along the curve";
-            tests
-                .extend(curve.map(|steps| Test::new("curve", what, steps, [least, f64::INFINITY])));
+            tests.extend(
+                curve.map(|steps| Test::new(CheckId::Curve, what, steps, [least, f64::INFINITY])),
+            );
         }
         match &mut self.fine {
             Some(fine) if rounding <= COARSE => fine.is_single = is_single,
@@ -314,12 +326,12 @@ impl Whole {
 }
 
 /// Returns whether theory knows covariances of the values.
-fn has_covariances(prediction: &Prediction, asked: Asked) -> bool {
+fn has_covariances(prediction: &Prediction, asked: TestRequest) -> bool {
     prediction.covariances.iter().any(|covariance| covariance.pair[1] < asked.values)
 }
 
 /// Returns a sentence about the part of the values' distribution that theory does not know.
-fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
+fn unknown(prediction: &Prediction, asked: TestRequest) -> Option<String> {
     let Prediction { distribution, increments, channels, .. } = prediction;
     if asked.values != channels.len() && !increments.is_empty() {
         let why = "it takes all channels of a draw";
@@ -369,14 +381,14 @@ const COARSE: f64 = 1e-6;
 const BITS: i32 = 22;
 
 /// First flights of another program: too many ties mean that distances are rounded more than to single precision.
-struct Fineness {
+struct TieTest {
     resolution: Resolution,
     first: Vec<f64>,
     /// True if they are numbers of single precision.
     is_single: bool,
 }
 
-impl Fineness {
+impl TieTest {
     /// Starts before the first flight; `None` for draws that are not distances.
     fn of(prediction: &Prediction) -> Option<Self> {
         let resolution = Resolution::of(prediction)?;

@@ -6,7 +6,7 @@ use super::{Arguments, Judged};
 use crate::case::{Case, CaseError, Catalogue};
 use crate::judge::{
     CheckedClaim, Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Options, Session,
-    Taken, Theory, estimators_of, theory_of,
+    Theory, TheoryClaims, estimators_of, theory_of,
 };
 
 /// Claims about the draws of a file.
@@ -63,7 +63,7 @@ impl Claimed {
         let named = of_channel.unwrap_or(&self.claims[..values]);
         let claims: Vec<Claim> = named.iter().map(|(_, claim)| *claim).collect();
         let has_lookups = claims.first().is_some_and(|first| first.lookups.is_some());
-        let taken = self.theory.as_ref().map(|theory| Taken {
+        let taken = self.theory.as_ref().map(|theory| TheoryClaims {
             theory,
             has_lookups,
             is_mean_only: self.is_mean_only,

@@ -11,7 +11,7 @@ use crate::cli::{Console, USAGE, numbers, output};
 use crate::judge::images::against::{Terms, compare};
 use crate::judge::images::{Claim, Judgement, Level, Options, Stack, files, judge};
 use crate::report::judge::images as report;
-use crate::report::judge::junit::Told;
+use crate::report::judge::junit::JUnitCase;
 use numeric::digits::counted;
 
 /// Options on images.
@@ -128,7 +128,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
             errors.keep(output::print(&format!("{files} in {}\n{map}", out.display())));
         }
     }
-    errors.keep(arguments.write_junit(&[Told::of_images(&name, &judgement)], &[]));
+    errors.keep(arguments.write_junit(&[JUnitCase::of_images(&name, &judgement)], &[]));
     Ok(errors.close(arguments.code(judgement.verdict)))
 }
 

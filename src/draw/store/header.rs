@@ -89,7 +89,7 @@ impl Header {
 
 /// Returns a hash of everything that draws and decisions of an experiment depend on.
 fn key(plan: &Plan, case: &PlannedCase, planned: &Planned, made_by: &str) -> u64 {
-    let asked: Vec<_> = planned.questions.iter().map(|q| (&q.check, q.channel)).collect();
+    let asked: Vec<_> = planned.questions.iter().map(|q| (q.check, q.channel)).collect();
     let numbers = (planned.draws, planned.fixed, planned.horizon, planned.expect_biased);
     let predicted = planned.outcome.as_ref().ok().map(|ready| {
         let channels = ready.prediction.channels.iter();

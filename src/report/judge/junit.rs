@@ -11,7 +11,7 @@ use numeric::digits::number;
 
 /// Verdict on a file or a stack of images.
 #[derive(Debug, Clone)]
-pub struct Told {
+pub struct JUnitCase {
     name: String,
     verdict: Verdict,
     reason: String,
@@ -19,7 +19,7 @@ pub struct Told {
     lines: Vec<String>,
 }
 
-impl Told {
+impl JUnitCase {
     /// Returns the verdict on draws of this name.
     pub fn of_draws(name: &str, judgement: &Judgement) -> Self {
         let numbers = [
@@ -58,7 +58,7 @@ impl Told {
 /// Returns the verdicts, at the level `alpha` together; `unread` are files that could not be read, each with the
 /// reason.
 pub fn text(
-    told: &[Told],
+    told: &[JUnitCase],
     unread: &[(String, String)],
     alpha: f64,
     inconclusive: Inconclusive,
@@ -83,7 +83,7 @@ pub fn text(
     junit::text(&[suite], None)
 }
 
-fn test(told: &Told, inconclusive: Inconclusive) -> Test {
+fn test(told: &JUnitCase, inconclusive: Inconclusive) -> Test {
     let is_remarkable = told.verdict == Verdict::Pass && !told.reason.is_empty();
     Test {
         name: told.name.clone(),

@@ -258,13 +258,14 @@ pub fn marks(needs: &str, setup: Option<RangeInclusive<u64>>, is_fixed: bool) ->
 mod tests {
     use super::*;
     use crate::case::id::{Number, SamplingName, SweepPoint};
-    use crate::case::sweep::What;
+    use crate::case::sweep::SweptQuantity;
     use crate::plan::ExperimentId;
     use crate::record::{ChannelRecord, ExperimentRecord};
 
     /// Returns an experiment of one channel; the estimator is listed under the number.
     fn one(listed: usize, estimator: &str, control: &str, swept: Option<f64>) -> ExperimentRecord {
-        let value = swept.map(|value| SweepPoint { what: What::Sampling, value: Number(value) });
+        let value =
+            swept.map(|value| SweepPoint { what: SweptQuantity::Sampling, value: Number(value) });
         let id = ExperimentId { control: control.to_owned(), swept: value, ..Default::default() };
         let (label, channels) = (estimator.to_owned(), vec![ChannelRecord::default()]);
         ExperimentRecord { id, label, listed, channels, ..ExperimentRecord::default() }

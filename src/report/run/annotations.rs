@@ -65,8 +65,8 @@ fn of_failure(verdict: Verdict, failure: &Failure) -> String {
     let case = row.case;
     let title = format!("{} {}: {}", verdict.word(), case.name, failure.experiment());
     let mut said = format!("{} ({})", failure.reason(), failure.place());
-    if !failure.check().is_empty() {
-        said = format!("{}: {said}", failure.check());
+    if let Some(check) = failure.check() {
+        said = format!("{check}: {said}");
     }
     if let Some((word, command)) = row.next_command() {
         said = format!("{said}\n{word}: {command}");

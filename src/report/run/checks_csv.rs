@@ -28,7 +28,7 @@ table! {
         "sampling_kind" = |row| &row.of.experiment.id.sampling.kind;
         "control" = |row| &row.of.experiment.id.control;
         "swept" = |row| row.of.experiment.swept();
-        "check": "Name of the check, as in `trueflight list checks`" = |row| &row.found.check;
+        "check": "Name of the check, as in `trueflight list checks`" = |row| row.found.check.name();
         "what": "Quantity" = |row| &row.found.what;
         "channel": "Which value of a draw; empty for the experiment as a whole" = |row| &row.found.channel;
         "verdict": "Result of the check" = |row| row.found.verdict.word();

@@ -64,7 +64,7 @@ pub fn subjects(plan: &Plan) -> String {
 }
 
 /// Returns the first line of predictions.
-pub fn foretold(plan: &Plan) -> String {
+pub fn prediction_heading(plan: &Plan) -> String {
     let experiments = counted(plan.experiments().count() as u64, "experiment");
     format!("{}: theory of {experiments}, nothing is drawn\n", subjects(plan))
 }

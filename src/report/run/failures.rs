@@ -5,6 +5,7 @@ use crate::report::fields::{Shown, Table, shown};
 use crate::report::lists::joined;
 use crate::report::run::checks_csv::FindingRow;
 use crate::report::run::summary_csv::Line;
+use gate::CheckId;
 use gate::causes::{Pattern, Place};
 
 /// Finding with another verdict than pass, with its row.
@@ -33,9 +34,9 @@ pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
 
 /// Returns the findings that gave a row its verdict.
 pub fn of_row(row: Row<'_>, seed: u64) -> Vec<Failure<'_>> {
-    let guilty = row.findings().filter(|finding| Some(finding.verdict) == row.verdict);
+    let deciding = row.findings().filter(|finding| Some(finding.verdict) == row.verdict);
     let mut failures: Vec<Failure> =
-        guilty.map(|finding| Failure { row, finding: Some(finding), seed }).collect();
+        deciding.map(|finding| Failure { row, finding: Some(finding), seed }).collect();
     if failures.is_empty() {
         failures.push(Failure { row, finding: None, seed });
     }
@@ -49,9 +50,14 @@ impl<'a> Failure<'a> {
         self.row.name_with(channel)
     }
 
+    /// Returns the check; `None` if the row has no findings.
+    pub fn check(&self) -> Option<CheckId> {
+        self.finding.map(|finding| finding.check)
+    }
+
     /// Returns the check's name; empty if the row has no findings.
-    pub fn check(&self) -> &'a str {
-        self.finding.map_or("", |finding| finding.check.as_str())
+    pub fn check_name(&self) -> &'static str {
+        self.check().map_or("", CheckId::name)
     }
 
     /// Returns the reason, with the most important numbers.
@@ -70,7 +76,7 @@ impl<'a> Failure<'a> {
     /// Returns everything but the command, on one line.
     pub fn line(&self) -> String {
         let experiment = self.experiment();
-        let parts = [self.row.case.name.as_str(), &experiment, self.check(), self.reason()];
+        let parts = [self.row.case.name.as_str(), &experiment, self.check_name(), self.reason()];
         format!("{} ({})", joined(parts, ": "), self.place())
     }
 
@@ -139,8 +145,10 @@ pub fn pattern(row: &Row) -> Pattern {
         // Draws without randomness fail a bound, not the gate, so that the bias comes from the mean.
         let measured = || row.mean.zip(row.truth).map(|(mean, truth)| mean - truth);
         let off = finding.gate.map(|gate| gate.mean);
-        pattern
-            .note(&finding.check, off.or_else(|| measured().filter(|_| finding.check == "mean")));
+        pattern.note(
+            finding.check,
+            off.or_else(|| measured().filter(|_| finding.check == CheckId::Mean)),
+        );
     }
     pattern.place = place(row);
     pattern

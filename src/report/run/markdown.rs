@@ -50,7 +50,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
         let cells = [
             failure.row.case.name.clone(),
             failure.experiment(),
-            failure.check().to_owned(),
+            failure.check_name().to_owned(),
             failure.place(),
             failure.reason().to_owned(),
         ];

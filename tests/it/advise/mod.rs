@@ -10,7 +10,7 @@ use crate::common::place::{Place, assert_says};
 use crate::common::{case, differs, failing, none, rows, source};
 use trueflight::advise::{Advice, CURVES, Costs, Group, Request, Row, Target, advise};
 use trueflight::case::Spec;
-use trueflight::case::sweep::What;
+use trueflight::case::sweep::SweptQuantity;
 use trueflight::catalogue::own_pages;
 use trueflight::theory::prediction::search::Kind;
 
@@ -124,7 +124,7 @@ fn estimates_in_a_medium_of_many_pieces_are_about_predictions() {
     let mut wrong = Vec::new();
     for (estimator, sampling) in (0..8).flat_map(|i| [1.1, 2.5, 9.0].map(|sampling| (i, sampling)))
     {
-        let at = case.at(Some((What::Sampling, sampling))).expect("a place");
+        let at = case.at(Some((SweptQuantity::Sampling, sampling))).expect("a place");
         let pilots = case.pilots(1, estimator);
         let found = [at.predict(estimator, None, pilots), at.estimate(estimator, pilots)];
         let found = found.map(|found| {

@@ -17,7 +17,7 @@ use cpu_time::ThreadTime;
 use trueflight::advise::costs::fast;
 use trueflight::advise::{Costs, Group, Row};
 use trueflight::case::Case;
-use trueflight::case::sweep::{Variation, What};
+use trueflight::case::sweep::{SweptQuantity, Variation};
 use trueflight::estimators::{DrawBuffer, Experiment};
 use trueflight::rng::{Address, Streams};
 
@@ -173,8 +173,10 @@ fn measure(all: &mut [Timed]) {
 /// Returns the setting of a row at a factor on its σ̂; `None` where it has one factor only.
 fn setting(row: &Row, factor: f64) -> Option<Variation> {
     match (row.constant, row.margins) {
-        (Some(value), _) => Some(Some((What::Sampling, value * factor))),
-        (None, Some(_)) => Some(Some((What::SamplingScale, row.factor.unwrap_or(1.0) * factor))),
+        (Some(value), _) => Some(Some((SweptQuantity::Sampling, value * factor))),
+        (None, Some(_)) => {
+            Some(Some((SweptQuantity::SamplingScale, row.factor.unwrap_or(1.0) * factor)))
+        }
         (None, None) => (factor == 1.0).then_some(None),
     }
 }

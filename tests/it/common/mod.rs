@@ -8,6 +8,7 @@ pub mod place;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
+use trueflight::gate::CheckId;
 
 use trueflight::case::Case;
 use trueflight::case::CaseError;
@@ -94,15 +95,15 @@ pub fn row<'a>(rows: &'a [Row<'static>], estimator: &str) -> &'a Row<'static> {
 
 /// Lists the rows in which mean, variance or lookups do not pass, or were not tested.
 pub fn failing(rows: &[Row]) -> Vec<String> {
-    not_passing(rows, &["mean", "variance", "lookups"])
+    not_passing(rows, &[CheckId::Mean, CheckId::Variance, CheckId::Lookups])
 }
 
 /// Lists the rows in which these checks do not pass, or were not made.
-pub fn not_passing(rows: &[Row], checks: &[&str]) -> Vec<String> {
+pub fn not_passing(rows: &[Row], checks: &[CheckId]) -> Vec<String> {
     let mut wrong = Vec::new();
     for row in rows {
-        let is_unasked = |check: &&&str| row.findings().all(|finding| finding.check != **check);
-        let unasked: Vec<&&str> = checks.iter().filter(is_unasked).collect();
+        let is_unasked = |check: &&CheckId| row.findings().all(|finding| finding.check != **check);
+        let unasked: Vec<&CheckId> = checks.iter().filter(is_unasked).collect();
         if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
             let (name, channel) = (&row.experiment.label, &row.channel);
             let verdict = row.verdict;
@@ -116,7 +117,7 @@ pub fn not_passing(rows: &[Row], checks: &[&str]) -> Vec<String> {
 }
 
 /// Returns the finding of a check in a row.
-pub fn finding<'a>(row: &Row<'a>, check: &str) -> &'a Finding {
+pub fn finding<'a>(row: &Row<'a>, check: CheckId) -> &'a Finding {
     let mut found = row.findings().filter(|finding| finding.check == check);
     found.next().unwrap_or_else(|| panic!("no {check} of {}", row.experiment.label))
 }

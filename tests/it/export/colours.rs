@@ -5,7 +5,7 @@ use tempfile::TempDir;
 use trueflight::Catalogue;
 use trueflight::case::Source;
 use trueflight::export::truth::Truth;
-use trueflight::export::{ExportError, Target, Wishes, export_with};
+use trueflight::export::{ExportError, ExportOptions, Target, export_with};
 
 use super::source;
 
@@ -18,7 +18,7 @@ fn written(text: &str) -> Source {
 fn exported(
     source: &Source,
     target: Target,
-    wishes: &Wishes,
+    wishes: &ExportOptions,
 ) -> Result<(TempDir, Truth), ExportError> {
     let folder = tempfile::tempdir().expect("a folder");
     let found = export_with(&Catalogue::builtin(), source, target, wishes, folder.path())?;
@@ -29,15 +29,15 @@ fn text(folder: &TempDir, name: &str) -> String {
     std::fs::read_to_string(folder.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-fn refused(source: &Source, target: Target, wishes: &Wishes) -> String {
+fn refused(source: &Source, target: Target, wishes: &ExportOptions) -> String {
     match exported(source, target, wishes) {
         Ok((_, truth)) => panic!("{} was exported", truth.case),
         Err(error) => error.to_string(),
     }
 }
 
-fn channels(list: &[usize]) -> Wishes {
-    Wishes { channels: Some(list.to_vec()), ..Wishes::default() }
+fn channels(list: &[usize]) -> ExportOptions {
+    ExportOptions { channels: Some(list.to_vec()), ..ExportOptions::default() }
 }
 
 /// Returns the cube of the field: `T = exp(−2 σ_t)`, `σ_t` = ½, 1, 2.
@@ -47,7 +47,8 @@ fn cube() -> Source {
 
 #[test]
 fn a_homogeneous_cube_of_three_colours_is_written_as_one() {
-    let (folder, truth) = exported(&cube(), Target::Mitsuba, &Wishes::default()).expect("a scene");
+    let (folder, truth) =
+        exported(&cube(), Target::Mitsuba, &ExportOptions::default()).expect("a scene");
     assert_eq!((truth.version, truth.problem.as_str()), (1, "transmittance"));
     assert!(truth.field.is_none() && !folder.path().join("density.vol").exists());
     let scene = text(&folder, "transmittance.xml");
@@ -65,7 +66,7 @@ fn a_homogeneous_cube_of_three_colours_is_written_as_one() {
             assert_eq!((law.low, law.high, law.variance), (Some(0.0), None, None));
         }
     }
-    let wishes = Wishes { heterogeneous: true, ..Wishes::default() };
+    let wishes = ExportOptions { heterogeneous: true, ..ExportOptions::default() };
     let (folder, again) = exported(&cube(), Target::Mitsuba, &wishes).expect("a scene");
     let scene = text(&folder, "transmittance.xml");
     assert!(scene.contains("type=\"heterogeneous\"") && scene.contains("0.25 0.5 1.0"), "{scene}");
@@ -83,7 +84,7 @@ fn layers_of_three_colours_are_one_grid_of_three_channels() {
          estimators = [\"independent\"]\n",
         media.map(layers).join(", ")
     );
-    let wishes = Wishes { cells: Some(64), ..Wishes::default() };
+    let wishes = ExportOptions { cells: Some(64), ..ExportOptions::default() };
     let (folder, truth) = exported(&written(&case), Target::Mitsuba, &wishes).expect("a scene");
     let bytes = std::fs::read(folder.path().join("density.vol")).expect("a field");
     let word = |n: usize| <[u8; 4]>::try_from(&bytes[4 + 4 * n..8 + 4 * n]).expect("a word");
@@ -116,11 +117,11 @@ fn layers_of_three_colours_are_one_grid_of_three_channels() {
 
 #[test]
 fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
-    let albedos = |case: &str, wishes: &Wishes| {
+    let albedos = |case: &str, wishes: &ExportOptions| {
         exported(&source(case), Target::Mitsuba, wishes).unwrap_or_else(|e| panic!("{case}: {e}"))
     };
     // One extinction, three albedos: both pictures in three channels, each as that of the slab of one albedo.
-    let (folder, truth) = albedos("slab/spectral-three-albedos", &Wishes::default());
+    let (folder, truth) = albedos("slab/spectral-three-albedos", &ExportOptions::default());
     assert_eq!(truth.problem, "slab");
     let scene = text(&folder, "reflectance.xml");
     assert!(scene.contains("value=\"1.0 0.7 0.45714286\""), "{scene}");
@@ -142,17 +143,17 @@ fn slabs_furnaces_and_lamps_have_a_truth_per_channel() {
             assert!((stated / right - 1.0).abs() < 1e-8, "channel {number}: {stated}, {right}");
         }
     }
-    let (_, truth) = albedos("slab/chromatic-like-colours", &Wishes::default());
+    let (_, truth) = albedos("slab/chromatic-like-colours", &ExportOptions::default());
     let names: Vec<&str> = truth.questions.iter().map(|q| q.name.as_str()).collect();
     assert_eq!(names[..2], ["reflectance, channel 1", "reflectance, channel 2"]);
-    let (folder, truth) = albedos("furnace/spectral-like-colours", &Wishes::default());
+    let (folder, truth) = albedos("furnace/spectral-like-colours", &ExportOptions::default());
     assert!(truth.questions.iter().all(|question| question.mean == 1.0));
     assert_eq!(truth.questions.len(), 3);
     let scene = text(&folder, "radiance.xml");
     assert!(scene.contains("type=\"homogeneous\"") && scene.contains("type=\"sphere\""), "{scene}");
     assert!(truth.notes.iter().any(|note| note.contains("white")));
     // Renderers have one phase function, and the radiance in a furnace is 1 with any.
-    let (folder, truth) = albedos("furnace/spectral-known-bugs", &Wishes::default());
+    let (folder, truth) = albedos("furnace/spectral-known-bugs", &ExportOptions::default());
     assert!(truth.notes.iter().any(|note| note.contains("phase function of the first")));
     assert!(text(&folder, "radiance.xml").contains("name=\"g\" value=\"0.6\""));
     assert!(truth.questions.iter().all(|question| question.mean == 1.0));
@@ -171,7 +172,7 @@ fn what_a_picture_cannot_hold_is_refused_with_a_cure() {
         "title = \"x\"\n[problem.transmittance]\nmedium = [1, 2, 3, 4]\nspan = [0, 1]\nsampling = 4\n\
          estimators = [\"independent\"]\n",
     );
-    let told = refused(&many, Target::Mitsuba, &Wishes::default());
+    let told = refused(&many, Target::Mitsuba, &ExportOptions::default());
     assert!(told.contains("4 channels") && told.contains("--channels 1,2,3"), "{told}");
     for (list, words) in [
         (&[5][..], "none is number 5"),
@@ -191,18 +192,19 @@ fn what_a_picture_cannot_hold_is_refused_with_a_cure() {
     assert_eq!(means.len(), 2);
     assert!(truth.notes.iter().any(|note| note.ends_with("4, 2")), "{:?}", truth.notes);
     let phases = source("slab/chromatic-three-colours");
-    let told = refused(&phases, Target::Mitsuba, &Wishes::default());
+    let told = refused(&phases, Target::Mitsuba, &ExportOptions::default());
     assert!(told.contains("phase functions") && told.contains("--channels 1"), "{told}");
     assert!(exported(&phases, Target::Mitsuba, &channels(&[3])).is_ok());
     let grey = source("transmittance/eq21-overview");
     assert!(refused(&grey, Target::Mitsuba, &channels(&[2])).contains("1 channel, and none"));
-    let wishes = Wishes { heterogeneous: true, ..Wishes::default() };
+    let wishes = ExportOptions { heterogeneous: true, ..ExportOptions::default() };
     assert!(refused(&cube(), Target::Pbrt, &wishes).contains("leave --heterogeneous out"));
 }
 
 #[test]
 fn a_channel_is_a_scene_of_its_own_where_a_renderer_has_wavelengths() {
-    let (folder, truth) = exported(&cube(), Target::Pbrt, &Wishes::default()).expect("scenes");
+    let (folder, truth) =
+        exported(&cube(), Target::Pbrt, &ExportOptions::default()).expect("scenes");
     for (question, extinction) in truth.questions.iter().zip(["0.5", "1.0", "2.0"]) {
         let scene = text(&folder, &question.scene);
         let medium = format!("\"spectrum sigma_a\" [ 200 {extinction} 900 {extinction} ]");
@@ -218,7 +220,7 @@ fn a_channel_is_a_scene_of_its_own_where_a_renderer_has_wavelengths() {
 fn homogeneous_boxes_of_one_channel_are_homogeneous() {
     for case in ["transmittance/constant-sampling", "slab/thin"] {
         let (folder, truth) =
-            exported(&source(case), Target::Mitsuba, &Wishes::default()).expect("a scene");
+            exported(&source(case), Target::Mitsuba, &ExportOptions::default()).expect("a scene");
         let question = &truth.questions[0];
         let scene = text(&folder, &question.scene);
         assert!(

@@ -8,7 +8,7 @@ use trueflight::bench::record::{
 };
 use trueflight::bench::stored::{Change, Comparison};
 use trueflight::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
-use trueflight::case::sweep::What;
+use trueflight::case::sweep::SweptQuantity;
 use trueflight::report::bench::{console, render, tables};
 use trueflight::report::layout::Pen;
 
@@ -38,7 +38,7 @@ fn id(estimator: &str, swept: Option<f64>) -> ExperimentId {
         case: "bench/eq21-sweep".to_owned(),
         estimator: EstimatorName { name: estimator.to_owned(), settings: String::new() },
         sampling: SamplingName { constant, kind: constant.map_or("", |_| "constant").to_owned() },
-        swept: constant.map(|value| SweepPoint { what: What::Sampling, value }),
+        swept: constant.map(|value| SweepPoint { what: SweptQuantity::Sampling, value }),
         namesake: 1,
         ..ExperimentId::default()
     }

@@ -208,7 +208,7 @@ fn words_of_a_case_are_text_whatever_is_in_them() {
                 channel.reason = HOSTILE.to_owned();
             }
             for finding in &mut one.findings {
-                (finding.check, finding.channel) = (HOSTILE.to_owned(), HOSTILE.to_owned());
+                finding.channel = HOSTILE.to_owned();
                 finding.reason = HOSTILE.to_owned();
             }
         }

@@ -171,7 +171,7 @@ fn what_an_earlier_run_drew_is_no_part_of_the_total() {
 fn planning_tells_how_many_experiments_are_prepared() {
     let cases = built_in(&["transmittance/eq21-overview", "rod/known-bugs"]);
     let (most, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let plan = Plan::heard(&cases, &common::options(1, 1000), &|prepared, of| {
+    let plan = Plan::with_progress(&cases, &common::options(1, 1000), &|prepared, of| {
         most.fetch_max(prepared, Ordering::Relaxed);
         all.store(of, Ordering::Relaxed);
     });

@@ -129,7 +129,7 @@ pub trait WalkEvents {
 
     /// Values of paths; `T̂` of their connections is positive.
     #[inline(always)]
-    fn worth<L: Lane>(&self, path: &Path<L>) -> L {
+    fn weight<L: Lane>(&self, path: &Path<L>) -> L {
         path.weight(self.combination()) * path.quotient(path.light)
     }
 
@@ -138,8 +138,8 @@ pub trait WalkEvents {
     fn together<L: Lane>(&self, each: &[L]) -> L {
         let (first, rest) = (each[0], &each[1..]);
         let mut sum = first;
-        for &worth in rest {
-            sum = sum + worth;
+        for &weight in rest {
+            sum = sum + weight;
         }
         sum
     }
@@ -223,11 +223,11 @@ pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
             }
             (tracker.path.order, tracker.path.light) = (order, s);
             let valid = join(tracker, steps, which, random);
-            let mut worth = zero;
+            let mut weight = zero;
             if valid.any() {
-                worth = L::select(valid, steps.worth(&tracker.path), zero);
+                weight = L::select(valid, steps.weight(&tracker.path), zero);
             }
-            tracker.values[count] = worth;
+            tracker.values[count] = weight;
             count += 1;
         }
     }

@@ -88,13 +88,13 @@ impl<L: Lane> Densities<L> {
     /// heroes, given their own ratios and albedos: the probabilities to go straight on and to be scattered, and the
     /// own ratio.
     #[inline(always)]
-    pub fn chances<S: WalkEvents>(
+    pub fn probabilities<S: WalkEvents>(
         &self,
         among: &Scatterers<'_, S>,
         [own, albedo]: [L; 2],
     ) -> [L; 3] {
-        if let Some(chances) = among.walker.together() {
-            return chances.of_events(
+        if let Some(probabilities) = among.walker.together() {
+            return probabilities.of_events(
                 among.media.count,
                 #[inline(always)]
                 |channel| shares(self.ratios[channel], among.albedos[channel]),

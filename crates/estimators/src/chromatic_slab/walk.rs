@@ -17,7 +17,7 @@ use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
 use crate::chromatic::{WalkEvents, WalkerWeights};
 use crate::setup::walker::Walker;
-use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
+use crate::walks::hero::{HeroDistribution, LastPiece, Media, Weighing, number_of_hero};
 use crate::walks::steps::{diffuse, entering, turned};
 use crate::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::body::MAX_CHANNELS;
@@ -36,7 +36,7 @@ pub struct InSlab<'a, S> {
     weighing: Weighing,
     scores_all: bool,
     /// The distribution of the hero, if one is chosen.
-    law: Option<Law>,
+    law: Option<HeroDistribution>,
     /// `1/σ̂` of each channel.
     mean_free_paths: [f64; MAX_CHANNELS],
 }
@@ -60,7 +60,7 @@ impl<'a, S: WalkEvents> InSlab<'a, S> {
         }
         let media = Media::new(setup, &probabilities);
         let albedos = &problem.colours.albedos;
-        let law = walker.heroes().map(|heroes| Law::new(heroes, count));
+        let law = walker.heroes().map(|heroes| HeroDistribution::new(heroes, count));
         let among = Scatterers { media, albedos, phases, walker, steps };
         let support = setup.residual().mesh.support();
         Self { setup, support, among, weighing, scores_all, law, mean_free_paths }
@@ -175,8 +175,8 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
         path.last = self.among.steps.flown(deep, cosine);
         path.length = path.length + path.last;
         let own = path.densities.look(&self.among, hero, extinctions);
-        let chances = path.densities.chances(&self.among, [own, path.albedo]);
-        let [passes, scatters, _] = chances;
+        let probabilities = path.densities.probabilities(&self.among, [own, path.albedo]);
+        let [passes, scatters, _] = probabilities;
         let number = random.uniform_where(inside);
         let scattered = inside & number.below(scatters);
         let null = inside & !scattered & number.below(scatters + passes);
@@ -188,7 +188,7 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
         }
         if self.scores_all && inside.maybe() {
             let events = Events { scattered, null, collided: inside };
-            path.densities.weigh(&self.among, hero, (events, chances), deflection);
+            path.densities.weigh(&self.among, hero, (events, probabilities), deflection);
         }
         scattered | null
     }

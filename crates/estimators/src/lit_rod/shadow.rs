@@ -82,7 +82,7 @@ impl WalkEvents for Techniques {
 
 /// The medium between walks and the light.
 #[derive(Clone, Copy)]
-pub struct Before<'a> {
+pub struct MediumToLight<'a> {
     /// σ_t.
     pub medium: &'a Medium,
     /// σ̂.
@@ -91,7 +91,7 @@ pub struct Before<'a> {
     pub end: f64,
 }
 
-impl Before<'_> {
+impl MediumToLight<'_> {
     /// The exact transmittance from distances to the end, along directions of these cosines. Lanes outside `which`
     /// have arbitrary numbers.
     #[inline(always)]
@@ -158,7 +158,7 @@ impl<L: Lane> ShadowRays<L> {
     pub fn track<S: WalkEvents>(
         &mut self,
         steps: &S,
-        before: &Before,
+        before: &MediumToLight,
         (route, met): (&mut Route<impl BothWays<L>>, &TentativeCollision<L>),
         (cosine, albedo): (L, L),
         score: &mut L,

@@ -15,7 +15,7 @@
 //! ρ is `p_uni/p_nee` of the segment in flight, see [`theory::light::techniques`]; every real scattering
 //! resets it. Every flight takes two random numbers, a scattering one more.
 
-use super::shadow::{Before, ShadowRays, WalkEvents};
+use super::shadow::{MediumToLight, ShadowRays, WalkEvents};
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::Piecewise;
@@ -63,7 +63,7 @@ impl<L: Lane> Scatterers<L> for &Rod {
 #[derive(Clone, Copy)]
 pub struct ToEmitter<'a, S> {
     rod: &'a Rod,
-    before: Before<'a>,
+    before: MediumToLight<'a>,
     steps: S,
 }
 
@@ -71,7 +71,7 @@ impl<'a, S: WalkEvents> ToEmitter<'a, S> {
     /// The walk through a rod and its σ̂ to the emitter at `end`.
     #[inline(always)]
     pub fn new(rod: &'a Rod, sampling: &'a Piecewise, end: f64, steps: S) -> Self {
-        Self { rod, before: Before { medium: rod.medium(), sampling, end }, steps }
+        Self { rod, before: MediumToLight { medium: rod.medium(), sampling, end }, steps }
     }
 
     /// The walk on a setup.

@@ -15,7 +15,7 @@
 //! Every flight takes two random numbers; a scattering takes one for each direction that is chosen or drawn. A technique
 //! without hits draws none.
 
-use crate::lit_rod::shadow::{Before, ShadowRays, WalkEvents};
+use crate::lit_rod::shadow::{MediumToLight, ShadowRays, WalkEvents};
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
 use media::phase::Phase;
@@ -82,7 +82,7 @@ kept! {
 #[derive(Clone, Copy)]
 pub struct ToLight<'a, S, D> {
     slab: &'a LitSlab,
-    before: Before<'a>,
+    before: MediumToLight<'a>,
     steps: S,
     directions: D,
 }
@@ -93,7 +93,12 @@ impl<'a, S: WalkEvents, D: Directions> ToLight<'a, S, D> {
     pub fn of(setup: &'a Setup<LitSlab>, steps: S, directions: D) -> Self {
         let (slab, sampling, end) =
             (&*setup.problem, &setup.fields.sampling, setup.fields.mesh.support().to);
-        Self { slab, before: Before { medium: slab.medium(), sampling, end }, steps, directions }
+        Self {
+            slab,
+            before: MediumToLight { medium: slab.medium(), sampling, end },
+            steps,
+            directions,
+        }
     }
 }
 

@@ -61,11 +61,11 @@ impl ByRule for Rod {
                     .to_owned(),
                 at,
             }),
-            Err(NoVariance::Blurred(error)) if error < 1.0 => Err(Refusal::mismatch(
+            Err(NoVariance::Unresolved(error)) if error < 1.0 => Err(Refusal::mismatch(
                 needs,
                 format!("E[X²] is known to {error:.0e} only: σ̂ is next to where it diverges"),
             )),
-            Err(NoVariance::Blurred(_)) => Err(Refusal::mismatch(
+            Err(NoVariance::Unresolved(_)) => Err(Refusal::mismatch(
                 needs,
                 "σ̂ is so near to where E[X²] diverges that theory does not tell on which side",
             )),

@@ -201,6 +201,6 @@ impl<P: Estimated<Fields = ControlledLine>> Setup<P> {
     pub fn product<'a>(&'a self, rule: &'a dyn Rule) -> Product<'a> {
         let ControlledLine { mesh, sampling, control, log_unit, .. } = &self.fields;
         let product = Product::new(mesh, sampling, control, rule);
-        Product { laws: self.distributions, log_unit: *log_unit, ..product }
+        Product { with_distributions: self.distributions, log_unit: *log_unit, ..product }
     }
 }

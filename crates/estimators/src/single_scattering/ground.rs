@@ -9,7 +9,7 @@ use theory::problems::{Problem, SingleScattering};
 
 /// The ray with its medium, and shadow rays from it.
 #[derive(Clone, Copy)]
-pub struct Ground<'a> {
+pub struct RaySetup<'a> {
     /// Problem, σ̂ and control.
     pub setup: &'a Setup<SingleScattering>,
     /// Shadow rays.
@@ -24,7 +24,7 @@ pub struct Ground<'a> {
     kept: Option<f64>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> RaySetup<'a> {
     /// The ground of a setup.
     #[inline(always)]
     pub fn new(

@@ -9,7 +9,7 @@
 //! leave    one: a shadow ray is cast from the point that was kept;  the draw is ±Σ|y| T̂_shadow
 //! ```
 
-use super::ground::Ground;
+use super::ground::RaySetup;
 use super::shadow::ToLight;
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::Batches;
@@ -40,7 +40,7 @@ kept! {
 #[derive(Clone, Copy)]
 pub struct Interactions<'a, const RESAMPLED: bool> {
     /// The ground.
-    pub ground: Ground<'a>,
+    pub ground: RaySetup<'a>,
 }
 
 impl<const RESAMPLED: bool> Walk for Interactions<'_, RESAMPLED> {

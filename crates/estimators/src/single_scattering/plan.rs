@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
-use super::ground::Ground;
+use super::ground::RaySetup;
 use super::interactions::Interactions;
 use super::main_part::{self, MainPart};
 use super::shadow::require_shadow;
@@ -168,7 +168,7 @@ impl Vertices {
 
     /// Runs the walk by steps.
     #[inline(always)]
-    fn run<S: WalkEvents, R: Run>(self, ground: Ground, steps: S, run: R) -> R::Output {
+    fn run<S: WalkEvents, R: Run>(self, ground: RaySetup, steps: S, run: R) -> R::Output {
         match (self.is_chosen(), self.collision.is_some()) {
             (true, false) => run.run(&ToVertices::<S, true, false>::new(ground, self, steps)),
             (true, true) => run.run(&ToVertices::<S, true, true>::new(ground, self, steps)),
@@ -187,7 +187,7 @@ impl Vertices {
     ) -> Draw {
         let volume = setup.problem.volume();
         let rays = ShadowRays::new(volume, volume.bounds(), shadow);
-        let ground = Ground::new(setup, medium, &rays, &[]);
+        let ground = RaySetup::new(setup, medium, &rays, &[]);
         self.run(ground, steps, One { setup, medium, random })
     }
 
@@ -307,7 +307,7 @@ impl Plan {
 
     /// Runs the walk of the plan.
     #[inline(always)]
-    fn run<R: Run>(&self, ground: Ground, run: R) -> R::Output {
+    fn run<R: Run>(&self, ground: RaySetup, run: R) -> R::Output {
         match self.technique {
             Technique::Vertices(vertices) => vertices.run(ground, Right, run),
             Technique::Interactions => run.run(&Interactions::<false> { ground }),
@@ -326,7 +326,7 @@ impl Plan {
     ) -> R::Output {
         let volume = setup.problem.volume();
         let rays = ShadowRays::new(volume, volume.bounds(), self.shadow);
-        self.run(Ground::new(setup, medium, &rays, &[]), run)
+        self.run(RaySetup::new(setup, medium, &rays, &[]), run)
     }
 
     /// Makes the draws of a request: compiled once for all pages.
@@ -365,7 +365,7 @@ impl Plan {
         }
         let rays = ShadowRays::new(volume, volume.bounds(), shadow);
         let fields = [volume.batches(level, matches!(rays.bounds, Bounds::Box(_)))];
-        let ground = Ground::new(setup, medium, &rays, &fields);
+        let ground = RaySetup::new(setup, medium, &rays, &fields);
         self.run(ground, SideBySide { level, setup, medium, request })
     }
 }

@@ -4,7 +4,7 @@
 //! until [`TOGETHER`] lanes of its pack have. Scores of lanes that have found light are delayed likewise. A lane
 //! takes no random numbers in the meantime.
 
-use super::ground::Ground;
+use super::ground::RaySetup;
 use crate::space::shadow::{Light, Shadows};
 use crate::walks::TentativeCollision;
 use crate::{Refusal, Setup};
@@ -69,7 +69,7 @@ impl<L: Lane> ToLight<L> {
 
     /// Flies along the shadow rays.
     #[inline(always)]
-    pub fn fly(&mut self, ground: &Ground, depth: L) {
+    pub fn fly(&mut self, ground: &RaySetup, depth: L) {
         self.inside = self.casts;
         // Packs fly without a ray, too: a branch that no machine foresees costs more.
         if ground.rays.tracking != Tracking::Exact && self.casts.maybe() {
@@ -89,7 +89,7 @@ impl<L: Lane> ToLight<L> {
     #[inline(always)]
     pub fn collide(
         &mut self,
-        ground: &Ground,
+        ground: &RaySetup,
         met: &TentativeCollision<L>,
         (aims, s): (L::Mask, L),
         enough: u32,

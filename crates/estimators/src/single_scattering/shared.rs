@@ -7,7 +7,7 @@
 //!          at an interaction  T̂ ← T̂ (1 − r)
 //! ```
 
-use super::ground::Ground;
+use super::ground::RaySetup;
 use super::shadow::ToLight;
 use super::vertices::{Right, WalkEvents};
 use crate::walks::{Route, TentativeCollision, Walk};
@@ -51,7 +51,7 @@ kept! {
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
     /// The ground.
-    pub ground: Ground<'a>,
+    pub ground: RaySetup<'a>,
     /// n.
     pub points: usize,
 }

@@ -16,7 +16,7 @@
 //! | collisions | `S/c T̂_shadow` |
 //! | both | `q S/c T̂_shadow/(p_i/w_i)`, `q = c σ_t x` |
 
-use super::ground::Ground;
+use super::ground::RaySetup;
 use super::main_part::MainPart;
 use super::plan::{Absorption, Vertices};
 use super::shadow::{TOGETHER, ToLight};
@@ -117,7 +117,7 @@ kept! {
 /// The walk, by points that are `CHOSEN`, by collisions where it `COLLIDES`, or by both.
 #[derive(Clone, Copy)]
 pub struct ToVertices<'a, S, const CHOSEN: bool, const COLLIDES: bool> {
-    ground: Ground<'a>,
+    ground: RaySetup<'a>,
     plan: Vertices,
     main: Option<MainPart<'a>>,
     /// c, the probability that a real collision scatters.
@@ -135,7 +135,7 @@ impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
 
     /// The walk on a ground.
     #[inline(always)]
-    pub fn new(ground: Ground<'a>, plan: Vertices, steps: S) -> Self {
+    pub fn new(ground: RaySetup<'a>, plan: Vertices, steps: S) -> Self {
         const { assert!(TOGETHER + Self::SCORES + Self::BEGIN < 8 + 3, "all lanes may wait") };
         let absorption = plan.collision.unwrap_or(Absorption::Weight);
         let scatters = absorption.scatters(ground.setup.problem.albedo());

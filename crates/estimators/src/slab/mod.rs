@@ -34,7 +34,7 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
         pieces: Pieces::new(&setup.fields.mesh, &setup.fields.sampling, &kinks, &[incidence.light]),
         largest_ratio: cut.largest(&ratio).map_or(0.0, |(_, ratio)| ratio),
         depth: setup.fields.mesh.optical_depth().value,
-        laws: setup.distributions,
+        with_distributions: setup.distributions,
     }
 }
 

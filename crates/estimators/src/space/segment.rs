@@ -8,7 +8,7 @@
 //! The null collisions of a path have the same places by either method. Their densities differ by the probabilities
 //! to be null: only delta tracking samples these events. A flight takes a random number, a decision another one.
 
-use media::sampling::{Flights, Flown, Ground};
+use media::sampling::{Flights, Flown, MajorantView};
 use numeric::geometry::Point;
 use numeric::geometry::exit::rows;
 use numeric::rng::Random;
@@ -37,7 +37,7 @@ pub struct Tracker<'a> {
     /// The medium.
     pub scene: &'a Scene,
     /// σ̂.
-    pub ground: &'a Ground<'a>,
+    pub ground: &'a MajorantView<'a>,
 }
 
 /// A field at places, one lane after the other; 0 outside `which`.

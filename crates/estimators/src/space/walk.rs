@@ -23,7 +23,7 @@ use super::shadow::{ShadowRays, Shadows};
 use super::tally::{Collision, Departure, Scattering, Tally};
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
-use media::sampling::{Flights, Ground};
+use media::sampling::{Flights, MajorantView};
 use media::{Batches, Majorants};
 use numeric::geometry::Point;
 use numeric::geometry::frame::turned_lanes;
@@ -80,7 +80,7 @@ pub struct InSpace<'a, T, S> {
     tally: &'a T,
     steps: S,
     scene: &'a Scene,
-    ground: Ground<'a>,
+    ground: MajorantView<'a>,
     shadow_rays: Option<ShadowRays<'a>>,
     /// a, where it is the same everywhere.
     albedo: Option<f64>,
@@ -104,7 +104,7 @@ impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
         (scene, majorants): (&'a Scene, &'a Majorants),
         fields: &'a [Batches<'a>],
     ) -> Self {
-        let (ground, albedo) = (Ground::new(majorants, tally.core()), scene.albedo.even());
+        let (ground, albedo) = (MajorantView::new(majorants, tally.core()), scene.albedo.even());
         Self { tally, steps, scene, ground, shadow_rays: tally.shadow_rays(), albedo, fields }
     }
 

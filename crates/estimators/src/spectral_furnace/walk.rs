@@ -15,7 +15,7 @@ use crate::Setup;
 use crate::chromatic::densities::{Densities, Events, Scatterers};
 use crate::chromatic::{WalkEvents, WalkerWeights};
 use crate::setup::walker::Walker;
-use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero};
+use crate::walks::hero::{HeroDistribution, LastPiece, Media, Weighing, number_of_hero};
 use crate::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::Batches;
 use media::body::MAX_CHANNELS;
@@ -39,7 +39,7 @@ pub struct InFurnace<'a, S> {
     weighing: Weighing,
     scores_all: bool,
     /// The distribution of the hero, if one is chosen.
-    law: Option<Law>,
+    law: Option<HeroDistribution>,
     /// σ_t of each channel for packs.
     fields: &'a [Batches<'a>],
 }
@@ -77,7 +77,7 @@ impl<'a, S: WalkEvents> InFurnace<'a, S> {
         for (channel, own) in problem.channels.iter().enumerate() {
             phases[channel] = own.phase;
         }
-        let law = walker.heroes().map(|heroes| Law::new(heroes, count));
+        let law = walker.heroes().map(|heroes| HeroDistribution::new(heroes, count));
         let among = Scatterers { media, albedos: &problem.albedos, phases, walker, steps };
         Self { problem, among, weighing, scores_all, law, fields }
     }
@@ -207,8 +207,8 @@ impl<S: WalkEvents> Walk for InFurnace<'_, S> {
     ) -> L::Mask {
         let (inside, one, hero) = (met.inside, path.length.each(1.0), path.hero);
         let own = path.densities.look(&self.among, hero, met.in_space);
-        let chances = path.densities.chances(&self.among, [own, path.albedo]);
-        let [passes, scatters, _] = chances;
+        let probabilities = path.densities.probabilities(&self.among, [own, path.albedo]);
+        let [passes, scatters, _] = probabilities;
         let number = random.uniform_where(inside);
         let scattered = inside & number.below(scatters);
         let null = inside & !scattered & number.below(scatters + passes);
@@ -218,7 +218,7 @@ impl<S: WalkEvents> Walk for InFurnace<'_, S> {
         }
         if self.scores_all && inside.maybe() {
             let events = Events { scattered, null, collided: inside };
-            path.densities.weigh(&self.among, hero, (events, chances), cosine);
+            path.densities.weigh(&self.among, hero, (events, probabilities), cosine);
         }
         scattered | null
     }

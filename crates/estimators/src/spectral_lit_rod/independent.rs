@@ -20,7 +20,7 @@
 use super::{Albedos, realisable, spectrum};
 use crate::lit_rod::walk::{Path, Scatterers, ToEmitter};
 use crate::setup::heroes::Heroes;
-use crate::walks::hero::{Law, number_of_hero, of_hero, or_of_hero};
+use crate::walks::hero::{HeroDistribution, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{Route, TentativeCollision, Walk, drawn};
 use crate::{Estimator, Inputs, Refusal, Setup, Traits};
 use media::body::MAX_CHANNELS;
@@ -57,7 +57,7 @@ impl Independent {
         let techniques = if self.is_full { FULL } else { HITS };
         OfHero {
             walk: ToEmitter::new(rod, &first.sampling, end, techniques),
-            law: Law::new(&self.heroes, count),
+            law: HeroDistribution::new(&self.heroes, count),
             count,
             mean_free_paths,
             probabilities,
@@ -114,7 +114,7 @@ kept! {
 #[derive(Clone, Copy)]
 struct OfHero<'a, S> {
     walk: ToEmitter<'a, S>,
-    law: Law,
+    law: HeroDistribution,
     count: usize,
     mean_free_paths: [f64; MAX_CHANNELS],
     probabilities: [f64; MAX_CHANNELS],

@@ -26,7 +26,9 @@
 
 use super::Albedos;
 use super::events::{Technique, WalkEvents};
-use crate::walks::hero::{LastPiece, Law, Media, Weighing, number_of_hero, of_hero, or_of_hero};
+use crate::walks::hero::{
+    HeroDistribution, LastPiece, Media, Weighing, number_of_hero, of_hero, or_of_hero,
+};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
@@ -47,7 +49,7 @@ pub struct ToEmitter<'a, S> {
     end: f64,
     steps: &'a S,
     media: Media,
-    law: Law,
+    law: HeroDistribution,
     mean_free_paths: Channels,
     albedos: Albedos<'a>,
     /// The probability to keep the direction by channel and hero.
@@ -93,7 +95,7 @@ impl<'a, S: WalkEvents> ToEmitter<'a, S> {
             end: setup.residual().mesh.support().to,
             steps,
             media: Media::new(setup, &probabilities),
-            law: Law::new(heroes, count),
+            law: HeroDistribution::new(heroes, count),
             mean_free_paths,
             albedos,
             forward,
@@ -327,7 +329,7 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
         self.media.common(*hero, [*length - *last * without, *collisions], values);
         let mut density = zero;
         for (channel, value) in values.iter_mut().enumerate() {
-            let (common, probability) = (*value, self.media.chances[channel]);
+            let (common, probability) = (*value, self.media.probabilities[channel]);
             let direction = common * lists[count + channel];
             let by_hit = direction * lists[2 * count + channel];
             *value = by_hit;

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use super::Coloured;
 use crate::setup::heroes::Heroes;
-use crate::walks::hero::{Law, number_of_hero};
+use crate::walks::hero::{HeroDistribution, number_of_hero};
 use crate::walks::steps::{diffuse, entering, turned};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Kernel, Refusal, Request, Setup};
@@ -87,10 +87,10 @@ pub struct InBody<'a> {
     colours: &'a Colours,
     page: &'a dyn HeroWeights,
     /// The distribution of the hero, if one is chosen.
-    law: Option<Law>,
+    law: Option<HeroDistribution>,
     /// The number of heroes, and their probabilities to be scattered at a real collision.
     heroes: usize,
-    chances: [f64; MAX_CHANNELS],
+    probabilities: [f64; MAX_CHANNELS],
     /// Weights by channel, order and hero: of [`TABLE`] orders, or empty.
     table: &'a [f64],
 }
@@ -103,13 +103,13 @@ impl<'a> InBody<'a> {
     fn new<P: Coloured>(page: &'a dyn HeroWeights, setup: &'a Setup<P>) -> Self {
         let (place, colours) = (setup.problem.place(), setup.problem.colours());
         let albedos = &colours.albedos;
-        let law = page.heroes().map(|heroes| Law::new(heroes, albedos.len()));
+        let law = page.heroes().map(|heroes| HeroDistribution::new(heroes, albedos.len()));
         let heroes = if law.is_some() { albedos.len() } else { 1 };
-        let mut chances = [0.0; MAX_CHANNELS];
-        for (hero, chance) in chances[..heroes].iter_mut().enumerate() {
+        let mut probabilities = [0.0; MAX_CHANNELS];
+        for (hero, chance) in probabilities[..heroes].iter_mut().enumerate() {
             *chance = page.chance(albedos, hero);
         }
-        Self { place, colours, page, law, heroes, chances, table: &[] }
+        Self { place, colours, page, law, heroes, probabilities, table: &[] }
     }
 
     /// The weights of walks by their number, `order · heroes + hero`.
@@ -213,7 +213,7 @@ impl Walk for InBody<'_> {
             Place::Slab(incidence) => incidence.light,
         };
         let cosine = entering(light, diffuse, which, one, random);
-        let chance = number_of_hero(hero, &self.chances[..self.heroes]);
+        let chance = number_of_hero(hero, &self.probabilities[..self.heroes]);
         Particle { cosine, hero, chance, order: zero }
     }
 

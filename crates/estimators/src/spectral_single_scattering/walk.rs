@@ -19,7 +19,7 @@ use super::events::{Right, WalkEvents};
 use crate::setup::walker::Walker;
 use crate::space::exit::{along, ends};
 use crate::space::shadow::ShadowRays;
-use crate::walks::hero::{Law, Media, number_of_hero, of_hero, or_of_hero};
+use crate::walks::hero::{HeroDistribution, Media, number_of_hero, of_hero, or_of_hero};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Kernel, Request, Setup};
 use media::body::MAX_CHANNELS;
@@ -75,7 +75,7 @@ kept! {
 pub struct ToScattering<'a, S, const ALL: bool> {
     setup: &'a Setup<SpectralSingleScattering>,
     walker: &'a Walker,
-    law: Option<Law>,
+    law: Option<HeroDistribution>,
     media: Media,
     albedos: [f64; MAX_CHANNELS],
     /// True if shadow rays are tracked.
@@ -133,7 +133,7 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
         albedos[..count].copy_from_slice(&setup.problem.albedos);
         let law = walker.heroes().map(
             #[inline(always)]
-            |heroes| Law::new(heroes, count),
+            |heroes| HeroDistribution::new(heroes, count),
         );
         let (media, tracks) =
             (Media::new(setup, &walker.probabilities(count)), shadow == Shadow::Ratio);
@@ -143,9 +143,9 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
     /// The probabilities to be scattered and to go straight on, given the hero's ratio and the ratios of all
     /// channels.
     #[inline(always)]
-    fn chances<L: Lane>(&self, path: &Flight<L>, own: L, ratios: &[L]) -> [L; 2] {
-        if ALL && let Some(chances) = self.walker.together() {
-            let [passes, scatters, _] = chances.of_events(
+    fn probabilities<L: Lane>(&self, path: &Flight<L>, own: L, ratios: &[L]) -> [L; 2] {
+        if ALL && let Some(probabilities) = self.walker.together() {
+            let [passes, scatters, _] = probabilities.of_events(
                 self.media.count,
                 #[inline(always)]
                 |channel| shares(ratios[channel], self.albedos[channel]),
@@ -340,7 +340,7 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
                 *ratio = met.extinctions[channel] / one.each(self.media.majorants[channel]);
                 own = or_of_hero(path.hero, channel, own, *ratio);
             }
-            let [scatters, passes] = self.chances(path, own, ratios);
+            let [scatters, passes] = self.probabilities(path, own, ratios);
             is_scattered = inside & number.below(scatters);
             let is_null = inside & !is_scattered & number.below(scatters + passes);
             if ALL {
@@ -431,7 +431,7 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         if !ALL {
             for (channel, value) in values.iter_mut().enumerate() {
                 let lit = &self.setup.problem.channels[channel];
-                let chance = zero.each(self.media.chances[channel]);
+                let chance = zero.each(self.media.probabilities[channel]);
                 let alone = lit.source(s) / zero.each(lit.albedo()) * through[channel] / chance;
                 *value = L::select(hero.equals(channel as f64), alone, zero);
             }
@@ -443,7 +443,8 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         for (channel, value) in values.iter_mut().enumerate() {
             let (common, lit) = (*value, &self.setup.problem.channels[channel]);
             let is_last = channel + 1 == count;
-            density = density + common * self.steps.share(self.media.chances[channel], is_last);
+            density =
+                density + common * self.steps.share(self.media.probabilities[channel], is_last);
             let through = self.steps.through(through[channel], heros);
             *value = common * through * lit.source(s) / zero.each(lit.albedo());
         }

@@ -28,9 +28,9 @@ impl Coloured for SpectralSlab {
     }
 
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
-        let (incidence, laws) = (setup.problem.incidence, setup.distributions);
+        let (incidence, with_distributions) = (setup.problem.incidence, setup.distributions);
         let (mesh, sampling) = (&*setup.fields.mesh, &setup.fields.sampling);
-        Box::new(Slabs { incidence, mesh, sampling, laws })
+        Box::new(Slabs { incidence, mesh, sampling, with_distributions })
     }
 
     fn place(&self) -> Place<'_> {

@@ -15,7 +15,7 @@
 
 use super::events::WalkEvents;
 use crate::setup::heroes::Heroes;
-use crate::walks::hero::{Law, Media, number_of_hero, of_hero};
+use crate::walks::hero::{HeroDistribution, Media, number_of_hero, of_hero};
 use crate::walks::{self, GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use crate::{Draw, Setup};
 use media::Lookups;
@@ -47,7 +47,7 @@ pub struct AlongRay<'a, S> {
     /// True if one walk serves all channels through their common σ̂: no hero is chosen.
     is_common: bool,
     /// The distribution of heroes.
-    pub law: Law,
+    pub law: HeroDistribution,
     media: Media,
     /// `1/σ̂` of each channel.
     mean_free_paths: [f64; MAX_CHANNELS],
@@ -78,7 +78,7 @@ impl<'a, S: WalkEvents> AlongRay<'a, S> {
             support: setup.residual().mesh.support(),
             tracker,
             is_common: false,
-            law: Law::new(heroes, count),
+            law: HeroDistribution::new(heroes, count),
             media: Media::new(setup, &probabilities),
             mean_free_paths,
             collisions,
@@ -205,7 +205,7 @@ impl<S: WalkEvents> AlongRay<'_, S> {
                 let value = if delta { one } else { weights[0] };
                 for (channel, own) in values.iter_mut().enumerate() {
                     let is_hero = hero.equals(channel as f64);
-                    *own = self.steps.alone(is_hero, value, self.media.chances[channel]);
+                    *own = self.steps.alone(is_hero, value, self.media.probabilities[channel]);
                 }
             }
             Tracker::Hero { delta } if !self.is_common => {
@@ -220,7 +220,7 @@ impl<S: WalkEvents> AlongRay<'_, S> {
                     let relative = self.relative(channel, hero, lookups, last);
                     *own = relative * weights[channel];
                     densities[channel] = self.steps.density(delta, *own, relative);
-                    let probability = self.media.chances[channel];
+                    let probability = self.media.probabilities[channel];
                     mean = mean
                         + densities[channel] * self.steps.share(probability, channel + 1 == count);
                 }

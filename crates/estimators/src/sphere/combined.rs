@@ -28,7 +28,7 @@ use crate::space::segment::Tracker;
 use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
 use crate::space::tally::{Collision, Departure, Scattering, Tally};
 use media::Majorants;
-use media::sampling::Ground;
+use media::sampling::MajorantView;
 use numeric::geometry::exit::{self, dot, rows};
 use numeric::geometry::{Bounds, Point, Ray};
 use numeric::rng::Random;
@@ -66,7 +66,7 @@ kept! {
 /// A walk with techniques that share its vertices. Packs make no connections, and then keep fewer numbers.
 pub struct Combined<'a, B, const CONNECTS: bool> {
     seeker: Seeker<'a>,
-    ground: Ground<'a>,
+    ground: MajorantView<'a>,
     rule: ParticleRule,
     sharing: SharedTechniques,
     tracking: Option<Tracking>,
@@ -82,7 +82,7 @@ impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     ) -> Self {
         Self {
             seeker: Seeker { sphere },
-            ground: Ground::new(majorants, None),
+            ground: MajorantView::new(majorants, None),
             rule,
             sharing,
             tracking: sharing.tracking(rule, majorants),

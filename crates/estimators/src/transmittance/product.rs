@@ -119,12 +119,13 @@ impl<R: Collision> Walk for Product<'_, R> {
     ) -> L::Mask {
         let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *met;
         let residual = extinction - self.control.extinction(t);
-        let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
+        let met = rules::Extinctions { residual, sampling: route.here.sampling(), mean_free_path };
         let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
-        let goes_on = if R::DECIDES { inside & !self.rule.kills(&met, number) } else { inside };
+        let goes_on =
+            if R::DECIDES { inside & !self.rule.absorption(&met, number) } else { inside };
         let Particle { weight, invariant } = particle;
         // In walks that end, too: the restart overwrites them.
-        invariant.take(*weight, self.rule.due(ratio, outcome.survival));
+        invariant.take(*weight, self.rule.unbiased_weight(ratio, outcome.survival));
         *weight = *weight * outcome.weight;
         goes_on
     }
@@ -187,8 +188,8 @@ impl<R: Collision> Walk for Survival<'_, R> {
     ) -> L::Mask {
         let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *met;
         let residual = extinction - self.0.control.extinction(t);
-        let met = rules::Met { residual, sampling: route.here.sampling(), mean_free_path };
-        let goes_on = inside & !self.0.rule.kills(&met, number);
+        let met = rules::Extinctions { residual, sampling: route.here.sampling(), mean_free_path };
+        let goes_on = inside & !self.0.rule.absorption(&met, number);
         let (zero, ratio) = (t.each(0.0), met.ratio());
         // NaN stays NaN.
         let is_missing = !zero.at_most(ratio);
@@ -258,18 +259,18 @@ impl<L: Lane> Invariant<L> {
         Self { begin: weight, taken: weight.each(0.0), scale: weight.size() }
     }
 
-    /// Adds the share that a collision takes from a particle that survives it: all but `due`, `(1 − r)/q`.
+    /// Adds the share that a collision takes from a particle that survives it: all but `unbiased_weight`, `(1 − r)/q`.
     #[inline(always)]
-    pub fn take(&mut self, weight: L, due: L) {
-        let share = weight * (weight.each(1.0) - due);
+    pub fn take(&mut self, weight: L, unbiased_weight: L) {
+        let share = weight * (weight.each(1.0) - unbiased_weight);
         self.taken = self.taken + share;
         self.scale = self.scale + share.size();
     }
 
     /// Adds the share in some lanes.
     #[inline(always)]
-    pub fn take_where(&mut self, which: L::Mask, weight: L, due: L) {
-        let share = weight * (weight.each(1.0) - due);
+    pub fn take_where(&mut self, which: L::Mask, weight: L, unbiased_weight: L) {
+        let share = weight * (weight.each(1.0) - unbiased_weight);
         self.taken.add_where(which, share);
         self.scale.add_where(which, share.size());
     }

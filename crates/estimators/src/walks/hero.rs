@@ -8,13 +8,13 @@ use numeric::Lane;
 
 /// The distribution of heroes.
 #[derive(Clone, Copy)]
-pub struct Law {
+pub struct HeroDistribution {
     count: usize,
     /// The sum of the probabilities of the channels before each.
     before: [f64; MAX_CHANNELS],
 }
 
-impl Law {
+impl HeroDistribution {
     /// Distribution of the heroes of `count` channels.
     #[inline(always)]
     pub fn new(heroes: &Heroes, count: usize) -> Self {
@@ -77,7 +77,7 @@ pub struct Media {
     /// `ln σ̂`.
     pub logarithms: [f64; MAX_CHANNELS],
     /// The probabilities of heroes.
-    pub chances: [f64; MAX_CHANNELS],
+    pub probabilities: [f64; MAX_CHANNELS],
 }
 
 impl Media {
@@ -86,11 +86,12 @@ impl Media {
     pub fn new<P: Estimated<Fields = Channels>>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
         let (none, count) = ([0.0; MAX_CHANNELS], setup.fields.len());
         let is_common = setup.fields.iter().all(|c| c.majorant == setup.fields[0].majorant);
-        let mut media = Self { count, is_common, majorants: none, logarithms: none, chances: none };
+        let mut media =
+            Self { count, is_common, majorants: none, logarithms: none, probabilities: none };
         for (channel, own) in setup.fields.iter().enumerate() {
             media.majorants[channel] = own.majorant;
             media.logarithms[channel] = own.ln_majorant;
-            media.chances[channel] = probabilities[channel];
+            media.probabilities[channel] = probabilities[channel];
         }
         media
     }
@@ -117,12 +118,12 @@ impl Media {
         let zero = found[0].each(0.0);
         let (mut density, mut sum) = (zero, zero);
         for (channel, &found) in found[..self.count - missing].iter().enumerate() {
-            density = density + found * self.chances[channel];
+            density = density + found * self.probabilities[channel];
         }
         let scale = L::select(zero.below(density), zero.each(1.0) / density, zero);
         for (channel, found) in found.iter_mut().enumerate() {
             *found = *found * scale;
-            sum = sum + *found * self.chances[channel];
+            sum = sum + *found * self.probabilities[channel];
         }
         (sum - 1.0).size()
     }
@@ -131,7 +132,7 @@ impl Media {
     #[inline(always)]
     pub fn alone<L: Lane>(&self, hero: L, found: &mut [L]) {
         for (channel, found) in found.iter_mut().enumerate() {
-            let own = hero.each(1.0) / hero.each(self.chances[channel]);
+            let own = hero.each(1.0) / hero.each(self.probabilities[channel]);
             *found = L::select(hero.equals(channel as f64), own, hero.each(0.0));
         }
     }

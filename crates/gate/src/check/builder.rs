@@ -2,7 +2,7 @@
 
 use super::made::{Closure, Factory, Sample};
 use super::outcome::{CheckError, CheckFault};
-use crate::session::{Claim, Lookups, Options, ROUNDING, Session, Taken, Theory};
+use crate::session::{Claim, Lookups, Options, ROUNDING, Session, Theory, TheoryClaims};
 use numeric::rng::Stream;
 
 /// Maximum number of values of a draw that are judged together: with more, the share of α of each is too small.
@@ -283,11 +283,11 @@ impl Said {
     }
 
     /// The numbers that a session takes from theory.
-    pub(super) fn taken(&self, has_lookups: bool) -> Option<Taken<'_>> {
+    pub(super) fn taken(&self, has_lookups: bool) -> Option<TheoryClaims<'_>> {
         // Theory has no distribution of a number of lookups that the caller claims.
         let has_lookups = has_lookups && self.lookups.is_none() && self.knows_lookups();
         let theory = self.known()?;
-        Some(Taken { theory, has_lookups, is_mean_only: self.mean_only })
+        Some(TheoryClaims { theory, has_lookups, is_mean_only: self.mean_only })
     }
 
     /// Returns true if a pushed draw comes with its lookups.

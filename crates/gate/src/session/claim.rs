@@ -6,7 +6,7 @@ use std::fmt;
 use super::Until;
 use super::flights::Flights;
 use super::quantity::{
-    Ground, MEAN_CAP, Quantity, USUAL, VARIANCE_CAP, mean_floor, variance_floor,
+    MEAN_CAP, Quantity, USUAL, VARIANCE_CAP, VarianceBound, mean_floor, variance_floor,
     variance_of_squares,
 };
 use crate::stats::gate::Design;
@@ -94,7 +94,7 @@ pub enum ClaimError {
     /// The truth is 0, and no tolerance is given.
     NoUnit,
     /// The tolerance is below 4 times the rounding error and the claim's own error.
-    Blurred {
+    Unresolved {
         /// The quantity.
         what: &'static str,
         /// ε.
@@ -131,7 +131,7 @@ impl fmt::Display for ClaimError {
             Self::NoUnit => f.write_str(
                 "a truth of 0 has no relative tolerance; give a tolerance, which is then absolute",
             ),
-            Self::Blurred { what, tolerance, floor } => write!(
+            Self::Unresolved { what, tolerance, floor } => write!(
                 f,
                 "a tolerance of {tolerance:e} for the {what} is below 4 times what rounding and the claim's own error may \
                  add, {floor:.1e}; give a wider tolerance or a smaller rounding"
@@ -330,7 +330,7 @@ impl CheckedClaim {
         }
         let blurred = |what, tolerance: Option<f64>, floor: f64| match tolerance {
             Some(tolerance) if tolerance < 4.0 * floor && !trial.is_certain() => {
-                Err(ClaimError::Blurred { what, tolerance, floor })
+                Err(ClaimError::Unresolved { what, tolerance, floor })
             }
             _ => Ok(()),
         };
@@ -374,10 +374,10 @@ impl CheckedClaim {
         let mut quantities = Vec::new();
         if !self.is_certain() {
             let known = claim.variance.map(|v| v / claim.unit / claim.unit);
-            let known = known.map(|v| Ground::Variance(v * (1.0 + claim.variance_error)));
-            let promised = claim.kurtosis.map(Ground::Kurtosis);
+            let known = known.map(|v| VarianceBound::Variance(v * (1.0 + claim.variance_error)));
+            let promised = claim.kurtosis.map(VarianceBound::Kurtosis);
             // The variance of the draws themselves is no ground to fail.
-            let ground = known.or(promised).or((!is_bounded).then_some(Ground::Shown));
+            let ground = known.or(promised).or((!is_bounded).then_some(VarianceBound::Shown));
             let in_units = |end: f64| (end - claim.truth) / claim.unit;
             let mean = Quantity::mean(ground, claim.floor()).within(wanted.tolerance);
             let range = claim.widened().map(|range| range.map(in_units));
@@ -386,7 +386,7 @@ impl CheckedClaim {
         let is_tested = |&v: &f64| v > 0.0 && !self.is_faint() && !self.is_certain();
         if let Some(variance) = claim.variance.filter(is_tested) {
             let known = claim.kurtosis.map(|kurtosis| {
-                Ground::Variance(variance_of_squares(kurtosis, claim.variance_error))
+                VarianceBound::Variance(variance_of_squares(kurtosis, claim.variance_error))
             });
             let furthest = claim.widened().map_or(f64::INFINITY, |range| {
                 range
@@ -394,7 +394,7 @@ impl CheckedClaim {
                     .into_iter()
                     .fold(0.0, |most: f64, end| most.max(end * end))
             });
-            let ground = known.or((!is_bounded).then_some(Ground::Shown));
+            let ground = known.or((!is_bounded).then_some(VarianceBound::Shown));
             let quantity = Quantity::variance(ground, claim.variance_floor(variance));
             quantities.push(Quantity {
                 // A square is never negative: the variance may be refuted as too large without any other claim.
@@ -405,9 +405,11 @@ impl CheckedClaim {
         }
         if let Some(claimed) = claim.lookups.filter(|claimed| !claimed.is_fixed()) {
             let relative = |v: f64| v / (claimed.mean * claimed.mean) * (1.0 + claimed.error);
-            let ground = claimed.variance.map_or(Ground::Shown, |v| Ground::Variance(relative(v)));
+            let ground = claimed
+                .variance
+                .map_or(VarianceBound::Shown, |v| VarianceBound::Variance(relative(v)));
             quantities.push(Quantity {
-                range: (ground == Ground::Shown).then_some([-1.0, f64::INFINITY]),
+                range: (ground == VarianceBound::Shown).then_some([-1.0, f64::INFINITY]),
                 unit,
                 ..Quantity::lookups(Some(ground), claimed.error).of(claimed.mean, claimed.mean)
             });

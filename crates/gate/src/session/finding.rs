@@ -12,7 +12,7 @@
 
 use super::ground;
 use super::judgement::ScalarFinding;
-use super::quantity::{Ground, Quantity};
+use super::quantity::{Quantity, VarianceBound};
 use super::reason::{Missing, Reason};
 use super::scalar::Scalar;
 use crate::deviation::Deviation;
@@ -42,7 +42,7 @@ impl Scalar {
             is_decided: self.decision != Decision::Open,
         });
         ScalarFinding {
-            check: self.quantity.check.to_owned(),
+            check: self.quantity.check,
             verdict,
             reason,
             is_estimated: !self.quantity.is_hard(),
@@ -58,7 +58,7 @@ impl Scalar {
         let (draws, carry) = (self.past.draws(), self.past.effective_draws().floor().max(0.0));
         let missing = match (ground, self.assumed()) {
             (None, _) => Missing::FirstDraws,
-            (Some(Ground::Kurtosis(kurtosis)), _) => {
+            (Some(VarianceBound::Kurtosis(kurtosis)), _) => {
                 let needed = ground::draws_of_bound(kurtosis, self.levels.ln_fail);
                 Missing::DrawsOfKurtosis { kurtosis, needed }
             }

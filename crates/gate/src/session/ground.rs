@@ -15,7 +15,7 @@
 //! unseen rare events do not carry the variance (Bahadur and Savage 1956). Therefore `shown` is an assumption:
 //! draws may pass by it, and the verdict says so, but never fail.
 
-use super::quantity::Ground;
+use super::quantity::VarianceBound;
 use crate::stats::Powers;
 use crate::stats::betting::{Aim, Bets};
 use crate::stats::capital::Capital;
@@ -40,7 +40,7 @@ const WIDEST: f64 = 0.5;
 
 /// A bound on the variance, and the bets that use it.
 pub(super) struct OfVariance {
-    ground: Ground,
+    ground: VarianceBound,
     /// Kurtosis that the bound relies on, once there is one.
     pub(super) kurtosis: Option<f64>,
     design: Option<Design>,
@@ -50,10 +50,10 @@ pub(super) struct OfVariance {
 }
 
 impl OfVariance {
-    pub(super) fn new(ground: Ground) -> Self {
+    pub(super) fn new(ground: VarianceBound) -> Self {
         let kurtosis = match ground {
-            Ground::Kurtosis(kurtosis) => Some(kurtosis),
-            Ground::Variance(_) | Ground::Shown => None,
+            VarianceBound::Kurtosis(kurtosis) => Some(kurtosis),
+            VarianceBound::Variance(_) | VarianceBound::Shown => None,
         };
         let capital = Capital::default();
         Self { ground, kurtosis, design: None, bounded: (0, 0), capital }
@@ -64,7 +64,7 @@ impl OfVariance {
     pub(super) fn variance(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
         let Some(bound) = self.needed(past, ln_fail) else {
             return match self.ground {
-                Ground::Variance(variance) => Some(variance),
+                VarianceBound::Variance(variance) => Some(variance),
                 _ => self.design.map(|design| design.variance),
             };
         };
@@ -75,8 +75,9 @@ impl OfVariance {
     /// A new bound, where one is due and can be given.
     fn needed(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
         let (before, bounds) = self.bounded;
-        let least = if self.ground == Ground::Shown { BLOCK } else { 1 };
-        if matches!(self.ground, Ground::Variance(_)) || past.draws() < least.max(2 * before) {
+        let least = if self.ground == VarianceBound::Shown { BLOCK } else { 1 };
+        if matches!(self.ground, VarianceBound::Variance(_)) || past.draws() < least.max(2 * before)
+        {
             return None;
         }
         let n = past.draws() as f64;
@@ -105,13 +106,13 @@ impl OfVariance {
 
     /// ln of the share of the evidence that remains beside the bound's own probability of an error.
     pub(super) fn ln_share(&self) -> f64 {
-        if matches!(self.ground, Ground::Variance(_)) { 0.0 } else { (1.0 - PILOT).ln() }
+        if matches!(self.ground, VarianceBound::Variance(_)) { 0.0 } else { (1.0 - PILOT).ln() }
     }
 
     /// Returns true if all draws together contradict the assumption about their variance.
     pub(super) fn is_contradicted(&self, all: &Powers) -> bool {
         let assumed = self.kurtosis.unwrap_or(f64::INFINITY);
-        self.ground == Ground::Shown
+        self.ground == VarianceBound::Shown
             && !(all.effective_draws() >= EFFECTIVE && all.kurtosis() <= assumed)
     }
 }

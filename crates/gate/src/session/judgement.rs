@@ -1,6 +1,7 @@
 //! Judgements of draws: the numbers, and a few lines of words, each with a label at its left, for every console and
 //! language.
 
+use crate::CheckId;
 use std::fmt::{self, Write};
 
 use super::reason::Reason;
@@ -85,7 +86,7 @@ pub struct Judgement {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DistributionFinding {
     /// `distances`, `depth`, `resolution`, `atoms`, `counts`, `curve` or `covariance`.
-    pub check: String,
+    pub check: CheckId,
     /// The distribution in words.
     pub what: String,
     /// The verdict on it.
@@ -115,7 +116,7 @@ pub enum Stop {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ScalarFinding {
     /// `mean`, `variance` or `lookups`.
-    pub check: String,
+    pub check: CheckId,
     /// The verdict on it.
     pub verdict: Verdict,
     /// The reason.
@@ -186,7 +187,7 @@ impl IndependenceFinding {
 
 impl Judgement {
     /// Finding on a scalar.
-    pub fn finding(&self, check: &str) -> Option<&ScalarFinding> {
+    pub fn finding(&self, check: CheckId) -> Option<&ScalarFinding> {
         self.findings.iter().find(|finding| finding.check == check)
     }
 
@@ -198,10 +199,10 @@ impl Judgement {
             return pattern;
         }
         for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
-            pattern.note(&finding.check, finding.gate.map(|gate| gate.mean));
+            pattern.note(finding.check, finding.gate.map(|gate| gate.mean));
         }
         for found in self.distribution.iter().filter(|found| found.verdict == Verdict::Fail) {
-            pattern.note(&found.check, None);
+            pattern.note(found.check, None);
         }
         match self.fault {
             Some(InvalidDraw::Number | InvalidDraw::Range) => pattern.number = true,
@@ -346,12 +347,12 @@ fn ln(evidence: f64) -> String {
 }
 
 fn gate(finding: &ScalarFinding) -> String {
-    let check = &finding.check;
+    let check = finding.check;
     let word = finding.verdict.word();
     let Some(gate) = &finding.gate else { return format!("{check} not tested: {word}") };
     let [above, below] = gate.ln_p;
-    let estimated = match (finding.is_estimated, check.as_str()) {
-        (true, "variance") => " · kurtosis estimated",
+    let estimated = match (finding.is_estimated, check) {
+        (true, CheckId::Variance) => " · kurtosis estimated",
         (true, _) => " · variance estimated",
         _ => "",
     };

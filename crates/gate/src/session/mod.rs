@@ -66,10 +66,10 @@ pub use judgement::{
     Stop,
 };
 pub use planned::{BlockSums, Planned, Trail};
-pub use quantity::{Ground, Quantity};
+pub use quantity::{Quantity, VarianceBound};
 pub use reason::{Missing, Reason, What};
 pub use scalar::{Levels, SIDE_SHARE, Scalar, main_share};
-pub use theory::{Asked, Distribution, Taken, Tested, Tests, Theory};
+pub use theory::{Distribution, TestRequest, Tested, Tests, Theory, TheoryClaims};
 pub use together::{AT_THE_END, Joint, LISTED, decide_together};
 pub use verdict::{Reasons, is_by_spread, rests_on};
 
@@ -94,7 +94,7 @@ impl Session {
         claims: &[Claim],
         wanted: Options,
         length: Option<u64>,
-        taken: Option<Taken>,
+        taken: Option<TheoryClaims>,
     ) -> Result<Self, ClaimError> {
         claim::check_alpha(wanted.alpha)?;
         let wanted = Options { alpha: wanted.alpha / claims.len() as f64, ..wanted };

@@ -9,6 +9,7 @@
 //! y has mean 0 for correct draws. Other quantities of the same kind (a covariance, a step of a curve) differ by
 //! their name and their largest tolerance.
 
+use crate::CheckId;
 use std::borrow::Cow;
 
 /// Largest tolerance of a mean that is chosen without a request.
@@ -22,7 +23,7 @@ pub const USUAL: f64 = 0.01;
 
 /// Known bound on the variance of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ground {
+pub enum VarianceBound {
     /// The variance, or an upper bound.
     Variance(f64),
     /// An upper bound of the kurtosis.
@@ -34,12 +35,12 @@ pub enum Ground {
 /// A quantity y of each draw with mean 0 for correct draws.
 #[derive(Debug, Clone)]
 pub struct Quantity {
-    /// Name of the check: `mean`, `variance`, `lookups`, …
-    pub check: &'static str,
+    /// The check.
+    pub check: CheckId,
     /// Name in a sentence: `the mean`.
     pub what: Cow<'static, str>,
     /// Known bound on its variance; `None` where only the range is used.
-    pub ground: Option<Ground>,
+    pub ground: Option<VarianceBound>,
     /// Range of y, if it is known.
     pub range: Option<[f64; 2]>,
     /// ε, if the caller gives one.
@@ -61,15 +62,16 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// A quantity with a name in sentences, a bound on its variance, δ and the largest ε.
+    /// A quantity of a check, with a name in sentences, a bound on its variance, δ and the largest ε.
     pub fn new(
+        check: CheckId,
         what: impl Into<Cow<'static, str>>,
-        ground: Option<Ground>,
+        ground: Option<VarianceBound>,
         floor: f64,
         cap: f64,
     ) -> Self {
         Self {
-            check: "",
+            check,
             what: what.into(),
             ground,
             range: None,
@@ -85,19 +87,19 @@ impl Quantity {
     }
 
     /// The mean of a draw about its expected value.
-    pub fn mean(ground: Option<Ground>, floor: f64) -> Self {
-        let quantity = Self::new("the mean", ground, floor, MEAN_CAP);
-        Self { check: "mean", usual: USUAL, must_pass: true, ..quantity }
+    pub fn mean(ground: Option<VarianceBound>, floor: f64) -> Self {
+        let quantity = Self::new(CheckId::Mean, "the mean", ground, floor, MEAN_CAP);
+        Self { usual: USUAL, must_pass: true, ..quantity }
     }
 
     /// The variance of a draw about its expected mean.
-    pub fn variance(ground: Option<Ground>, floor: f64) -> Self {
-        Self { check: "variance", ..Self::new("the variance", ground, floor, VARIANCE_CAP) }
+    pub fn variance(ground: Option<VarianceBound>, floor: f64) -> Self {
+        Self::new(CheckId::Variance, "the variance", ground, floor, VARIANCE_CAP)
     }
 
     /// The number of lookups of a draw.
-    pub fn lookups(ground: Option<Ground>, floor: f64) -> Self {
-        Self { check: "lookups", ..Self::new("the number of lookups", ground, floor, LOOKUPS_CAP) }
+    pub fn lookups(ground: Option<VarianceBound>, floor: f64) -> Self {
+        Self::new(CheckId::Lookups, "the number of lookups", ground, floor, LOOKUPS_CAP)
     }
 
     /// The quantity with a tolerance of the caller.
@@ -114,13 +116,13 @@ impl Quantity {
 
     /// Returns true if its ground lets it fail, and not only pass.
     pub fn is_hard(&self) -> bool {
-        self.ground != Some(Ground::Shown)
+        self.ground != Some(VarianceBound::Shown)
     }
 
     /// V, if it is known.
     pub fn known_variance(&self) -> Option<f64> {
         match self.ground {
-            Some(Ground::Variance(variance)) => Some(variance),
+            Some(VarianceBound::Variance(variance)) => Some(variance),
             _ => None,
         }
     }

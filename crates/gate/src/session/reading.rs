@@ -7,6 +7,7 @@ use super::judgement::{InvalidDraw, Judgement, Stop};
 use super::scalar::{Levels, Scalar, main_share};
 use super::theory::{Background, Tested, Tests};
 use super::{dependence, verdict};
+use crate::CheckId;
 use crate::stats::independence::Independence;
 use crate::stats::replays::{Replays, Runs};
 use crate::stats::sequences::Sequences;
@@ -101,16 +102,16 @@ impl Reading {
         let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
         let block = if is_known { BUFFER } else { block };
         let planned = CheckedClaim::planned(&quantities, length);
-        let scalar = |check: &str| {
+        let scalar = |check: CheckId| {
             let quantity = quantities.iter().find(|quantity| quantity.check == check)?;
             Some(Scalar::new(quantity.clone(), planned, levels))
         };
         Self {
             trial,
             powers: Powers::default(),
-            mean: scalar("mean"),
-            variance: scalar("variance"),
-            lookups: scalar("lookups"),
+            mean: scalar(CheckId::Mean),
+            variance: scalar(CheckId::Variance),
+            lookups: scalar(CheckId::Lookups),
             refuted: None,
             refuting: 0,
             range: trial.claim.widened(),
@@ -157,6 +158,7 @@ impl Reading {
     }
 
     /// Searches for draws that are no numbers, or outside the range.
+    #[allow(clippy::needless_bitwise_bool)] // without branches, see `are_all`
     fn look_at_values(&mut self, block: &[f64]) {
         let claim = &self.trial.claim;
         let (truth, unit) = (claim.truth, claim.unit);
@@ -202,6 +204,7 @@ impl Reading {
     }
 
     /// Searches for draws that refute the claim by themselves.
+    #[allow(clippy::needless_bitwise_bool)] // without branches, see `are_all`
     fn look_at_each(&mut self, block: &[f64], lookups: &[f64]) {
         if self.read == 0 {
             let mut values = block.to_vec();
@@ -241,6 +244,7 @@ impl Reading {
     }
 
     /// Passes a block of draws or averages to all checks.
+    #[allow(clippy::needless_bitwise_bool)] // without branches, see `are_all`
     fn judge(&mut self, block: &[f64], lookups: &[f64]) {
         let claim = &self.trial.claim;
         let batch = self.trial.wanted.batch;
@@ -373,7 +377,7 @@ impl Reading {
     }
 }
 
-/// Returns true if a condition holds for all numbers. The loop has no early exit, so that it is compiled for wide registers.
+/// Returns true if a condition holds for all numbers. The loop has no branches, so that it is compiled for wide registers.
 fn are_all(values: &[f64], is_sound: impl Fn(f64) -> bool) -> bool {
     struct Unsound<'a, F> {
         values: &'a [f64],

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 use super::ground::EFFECTIVE;
-use super::quantity::Ground;
+use super::quantity::VarianceBound;
 use crate::deviation::{Deviation, signed_percent};
 use crate::stats::verdict::BLOCK;
 use numeric::digits::{enough, percent};
@@ -49,7 +49,7 @@ pub enum Reason {
         /// True if all draws are equal.
         are_alike: bool,
         /// Known bound on the variance; `None` for a range alone.
-        ground: Option<Ground>,
+        ground: Option<VarianceBound>,
         /// Bias that the gate excludes, where it has decided.
         excluded: Option<f64>,
     },
@@ -348,12 +348,12 @@ fn excluded_bias(excluded: Option<f64>) -> String {
     excluded.map_or(String::new(), |bias| format!("; a bias of {bias:.2e} is excluded: {cure}"))
 }
 
-fn not_shown(what: &str, off: &Deviation, ground: Option<Ground>) -> String {
+fn not_shown(what: &str, off: &Deviation, ground: Option<VarianceBound>) -> String {
     let draws = format!("{} {}", off.draws, off.unit);
     match ground {
-        Some(Ground::Variance(_)) => format!("{draws} of the variance given do not show it"),
-        Some(Ground::Kurtosis(_)) => format!("{draws} of the kurtosis given do not show it"),
-        Some(Ground::Shown) => format!("no number of draws shows it without {}", cure(what)),
+        Some(VarianceBound::Variance(_)) => format!("{draws} of the variance given do not show it"),
+        Some(VarianceBound::Kurtosis(_)) => format!("{draws} of the kurtosis given do not show it"),
+        Some(VarianceBound::Shown) => format!("no number of draws shows it without {}", cure(what)),
         None => format!("{draws} of the range given do not show it: give more, or the variance"),
     }
 }

@@ -10,7 +10,7 @@
 //! passed may still fail on later draws.
 
 use super::ground::{FAIRLY_RELIABLE, OfRange, OfVariance, RELIABLE};
-use super::quantity::{Ground, Quantity};
+use super::quantity::{Quantity, VarianceBound};
 use crate::stats::Powers;
 use crate::stats::betting::Aim;
 use crate::stats::capital::ln_mean_exp;
@@ -261,7 +261,7 @@ impl Scalar {
 
     /// The kurtosis that a judgement assumes, without a claim of the caller.
     pub(super) fn assumed(&self) -> Option<f64> {
-        if self.quantity.ground != Some(Ground::Shown) {
+        if self.quantity.ground != Some(VarianceBound::Shown) {
             return None;
         }
         self.of_variance.as_ref().and_then(|ground| ground.kurtosis)

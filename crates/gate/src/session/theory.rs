@@ -22,7 +22,7 @@ const DERIVED: &str = "luminance";
 
 /// Input of the tests of a distribution.
 #[derive(Debug, Clone, Copy)]
-pub struct Asked {
+pub struct TestRequest {
     /// The level that the tests share.
     pub alpha: f64,
     /// Number of draws, where it is known and no decision ends them earlier.
@@ -42,7 +42,7 @@ pub trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     /// # Errors
     ///
     /// The reason why nothing is tested, as a sentence.
-    fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String>;
+    fn tests(&self, asked: TestRequest) -> Result<Box<dyn Tests>, String>;
 }
 
 /// Tests of a distribution that take draws.
@@ -117,7 +117,7 @@ impl Theory {
 
 /// Theory for all properties that are not given by numbers.
 #[derive(Debug, Clone, Copy)]
-pub struct Taken<'a> {
+pub struct TheoryClaims<'a> {
     /// The theory.
     pub theory: &'a Theory,
     /// True if theory judges the lookups of the draws.
@@ -126,7 +126,7 @@ pub struct Taken<'a> {
     pub is_mean_only: bool,
 }
 
-impl Taken<'_> {
+impl TheoryClaims<'_> {
     /// Background of the first of the readings of a draw's values: it tests the draw as a whole. `alpha` is the level of
     /// a value, `length` the number of draws, where it is known and no decision ends them earlier.
     pub(super) fn background(
@@ -151,7 +151,7 @@ impl Taken<'_> {
         } else {
             let alpha = SIDE_SHARE * wanted.alpha;
             let rounding = claims.first().map_or(0.0, |claim| claim.rounding);
-            let asked = Asked { alpha, length, has_lookups, rounding, values };
+            let asked = TestRequest { alpha, length, has_lookups, rounding, values };
             match theory.distribution.tests(asked) {
                 Ok(tests) => background.tests = Some(tests),
                 Err(why) => background.notes.push(why),

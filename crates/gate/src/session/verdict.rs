@@ -16,6 +16,7 @@ use super::judgement::{IndependenceFinding, InvalidDraw, Judgement, ScalarFindin
 use super::reading::{Reading, Refuted};
 use super::reason::Reason;
 use super::scalar::Scalar;
+use crate::CheckId;
 use crate::stats::gate;
 use crate::stats::verdict::{GateFinding, Verdict};
 use numeric::digits::short;
@@ -69,7 +70,7 @@ pub fn is_by_spread(about_truth: f64, about_mean: f64) -> bool {
 /// The verdict of the whole, and its guarantees.
 pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     let off = judgement.drift.as_ref().and_then(|drift| off_without_change(reading, drift));
-    let mean = judgement.findings.iter_mut().find(|found| found.check == "mean");
+    let mean = judgement.findings.iter_mut().find(|found| found.check == CheckId::Mean);
     if let (Some(reason), Some(mean)) = (off, mean.filter(|mean| mean.verdict != Verdict::Fail)) {
         (mean.verdict, mean.reason) = (Verdict::Fail, Some(reason));
     }
@@ -101,8 +102,10 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
 
 /// Names a refuted variance before the mean, and lets a mean that deviates only in units of it not fail.
 fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
-    let place = |check: &str| judgement.findings.iter().position(|found| found.check == check);
-    let (Some(at), Some(variance)) = (place("mean"), place("variance")) else { return };
+    let place = |check: CheckId| judgement.findings.iter().position(|found| found.check == check);
+    let (Some(at), Some(variance)) = (place(CheckId::Mean), place(CheckId::Variance)) else {
+        return;
+    };
     let found = &judgement.findings[variance];
     let is_larger = found.gate.is_some_and(|gate| gate.mean > 0.0);
     let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
@@ -141,9 +144,9 @@ fn withhold(judgement: &mut Judgement) {
     let not_judged = |what: &'static str| Some(Reason::NotJudged(what.into()));
     for found in &mut judgement.findings {
         found.verdict = Verdict::Inconclusive;
-        found.reason = not_judged(match found.check.as_str() {
-            "mean" => "the mean",
-            "variance" => "the variance",
+        found.reason = not_judged(match found.check {
+            CheckId::Mean => "the mean",
+            CheckId::Variance => "the variance",
             _ => "the number of lookups",
         });
     }
@@ -216,7 +219,7 @@ fn unused_tolerance(reading: &Reading) -> Option<String> {
 /// Guarantees of the verdict, and their limits.
 fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
     let mut said = Vec::new();
-    match judgement.finding("mean") {
+    match judgement.finding(CheckId::Mean) {
         None => {
             let what =
                 "no spread: every draw read is the truth to rounding, or the verdict is fail";
@@ -228,7 +231,7 @@ fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
             said.extend(missing(judgement, mean));
         }
     }
-    let variance = judgement.finding("variance");
+    let variance = judgement.finding(CheckId::Variance);
     if reading.trial.is_faint() && !reading.trial.is_certain() {
         said.push("the variance is not tested: rounding hides it".into());
     }
@@ -271,7 +274,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
     let claim = &reading.trial.claim;
     let alpha = judgement.alpha;
     let draws = if judgement.batch > 1 { "averages" } else { "draws" };
-    let correct = if judgement.finding("variance").is_some() || claim.range.is_some() {
+    let correct = if judgement.finding(CheckId::Variance).is_some() || claim.range.is_some() {
         format!("correct {draws}")
     } else if claim.variance.is_some() {
         format!("{draws} of the right mean and variance")
@@ -306,7 +309,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
 fn missing(judgement: &Judgement, mean: &ScalarFinding) -> Option<String> {
     let beta = judgement.beta;
     let miss = format!("a mean off by the tolerance passes with probability {beta} at most");
-    match judgement.finding("variance") {
+    match judgement.finding(CheckId::Variance) {
         None if mean.is_estimated => None,
         None if judgement.predicted_variance.is_some() => {
             Some(format!("variance assumed: {miss}, if the variance is right"))

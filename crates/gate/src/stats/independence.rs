@@ -70,10 +70,10 @@ pub struct Dependence {
 }
 
 impl Signs {
-    /// Adds the sign of ab.
+    /// Adds the sign of ab, without branches: a processor cannot predict signs.
+    #[allow(clippy::needless_bitwise_bool)] // `||` and `&&` are branches
     #[inline(always)]
     pub fn add(&mut self, a: f64, b: f64) {
-        // No branches: a processor cannot predict signs.
         let (up, down) = ([a > 0.0, b > 0.0], [a < 0.0, b < 0.0]);
         self.positive += u64::from(up[0] & up[1] | down[0] & down[1]);
         self.negative += u64::from(up[0] & down[1] | down[0] & up[1]);

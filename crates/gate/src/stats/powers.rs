@@ -100,8 +100,8 @@ impl Loop for Rows<'_> {
             fourth[lane] += square * square;
         };
         for row in rows {
-            for lane in 0..LANES {
-                add(lane, row[lane]);
+            for (lane, &y) in row.iter().enumerate() {
+                add(lane, y);
             }
         }
         for (lane, &y) in rest.iter().enumerate() {

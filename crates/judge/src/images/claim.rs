@@ -151,7 +151,7 @@ impl Pixels {
         let of = |i: usize| found.floor(i) / found.units[i % size.channels];
         let floor = (0..size.values()).map(of).fold(0.0, f64::max);
         match tolerance.filter(|&tolerance| tolerance < 4.0 * floor) {
-            Some(tolerance) => Err(ImageError::Blurred { tolerance, floor }),
+            Some(tolerance) => Err(ImageError::Unresolved { tolerance, floor }),
             None => Ok(found),
         }
     }
@@ -302,7 +302,7 @@ pub enum ImageError {
         "a tolerance of {tolerance:e} is below 4 times what rounding may add to a pixel, {floor:.1e} of the \
          picture's mean; give a wider tolerance, a smaller rounding, or images of more digits"
     )]
-    Blurred { tolerance: f64, floor: f64 },
+    Unresolved { tolerance: f64, floor: f64 },
     /// A truth of 0 everywhere without a tolerance.
     #[error(
         "a truth of 0 everywhere has no relative tolerance; give a tolerance, which is then absolute"

@@ -2,6 +2,7 @@
 
 use super::picture::{Size, Stack};
 use crate::LISTED;
+use gate::CheckId;
 use gate::causes::Pattern;
 use gate::stats::gate::Evidence;
 use gate::stats::verdict::{MISS, Verdict};
@@ -312,16 +313,16 @@ impl Judgement {
         }
         pattern.number = self.refuted_by.is_some();
         if self.variance.is_some_and(|variance| variance.is_refuted) {
-            pattern.note("variance", Some(1.0));
+            pattern.note(CheckId::Variance, Some(1.0));
         }
         let failing =
             self.whole.iter().chain(&self.tiles).filter(|tile| tile.verdict == Verdict::Fail);
         for tile in failing {
-            pattern.note("mean", Some(tile.mean - tile.truth));
+            pattern.note(CheckId::Mean, Some(tile.mean - tile.truth));
         }
         // A mean that deviates moves the variance of pixels that are hit or missed.
         if let Some(shown) = self.shown.as_ref().filter(|_| self.verdict == Verdict::Fail) {
-            pattern.note("mean", Some(shown.mean - shown.truth));
+            pattern.note(CheckId::Mean, Some(shown.mean - shown.truth));
         }
         pattern
     }

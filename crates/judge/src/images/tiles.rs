@@ -15,7 +15,7 @@
 use super::claim::Pixels;
 use super::judgement::Tile;
 use super::picture::{Size, Stack};
-use crate::{AT_THE_END, Ground, Levels, Quantity, Scalar};
+use crate::{AT_THE_END, Levels, Quantity, Scalar, VarianceBound};
 use gate::session::quantity::MEAN_CAP;
 use gate::stats::gate::{HORIZON, PLANNED};
 use gate::stats::normal::{upper_quantile, upper_tail};
@@ -60,7 +60,7 @@ fn planned_units(count: usize) -> f64 {
 
 impl Terms {
     /// Returns the mean of a part, with the ground for its spread and δ.
-    pub(super) fn mean(self, ground: Option<Ground>, floor: f64) -> Quantity {
+    pub(super) fn mean(self, ground: Option<VarianceBound>, floor: f64) -> Quantity {
         let cap = if self.is_capped { MEAN_CAP } else { 1e3 };
         Quantity { cap, ..Quantity::mean(ground, floor).within(self.tolerance) }
     }
@@ -183,9 +183,9 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
         return found.without_doubt(0.0);
     }
     let draws = if is_free { n * count } else { n };
-    let known = variance.map(|variance| Ground::Variance(variance / unit / unit));
+    let known = variance.map(|variance| VarianceBound::Variance(variance / unit / unit));
     let bounded = pixels.kurtosis.filter(|_| pixels.variance.is_none() && is_free);
-    let bounded = bounded.map(Ground::Kurtosis);
+    let bounded = bounded.map(VarianceBound::Kurtosis);
     let levels = if known.is_none() && bounded.is_some() { terms.levels } else { AT_THE_END };
     let truths = if is_free { pixels.truths(&places) } else { vec![truth] };
     let mean_quantity = Quantity {

@@ -10,6 +10,7 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::bidirectional_rod::Method;
 use estimators::bidirectional_rod::walk::{self, Path, WalkEvents};
+use gate::CheckId;
 use numeric::Lane;
 use theory::light::Heuristic;
 use theory::problems::BidirectionalRod;
@@ -52,16 +53,16 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Method, Bug>] = &[
-    ("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", TECHNIQUE, "mean", Bug::VertexCount),
-    ("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", TECHNIQUE, "mean", Bug::Reversed),
-    ("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", TECHNIQUE, "mean", Bug::WrongSegment),
-    ("bidirectional-hits-without-density", "weights take the densities of the hits, s = 0 and s = r + 2, for zero, and hits score all the same", FULL, "mean", Bug::HitsWithoutDensity),
-    ("bidirectional-technique-twice", "one technique is counted twice in the sum", FULL, "mean", Bug::Twice),
-    ("bidirectional-averaged", "techniques are averaged instead of added", FULL, "mean", Bug::Averaged),
-    ("bidirectional-same-numbers", "all techniques of a draw begin with the same random numbers", FULL, "covariance", Bug::SameNumbers),
-    ("bidirectional-nulls-in-one-density", "null vertices are in the density of a path's own technique only", TRACKED, "mean", Bug::NullsInOne),
-    ("bidirectional-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", TRACKED, "mean", Bug::TrackedTwice),
-    ("bidirectional-directional-density", "paths are divided by their directional densities, too: the transmittance of a connection cancels", DIRECTIONAL, "mean", Bug::DirectionalDensity),
+    ("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", TECHNIQUE, CheckId::Mean, Bug::VertexCount),
+    ("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", TECHNIQUE, CheckId::Mean, Bug::Reversed),
+    ("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", TECHNIQUE, CheckId::Mean, Bug::WrongSegment),
+    ("bidirectional-hits-without-density", "weights take the densities of the hits, s = 0 and s = r + 2, for zero, and hits score all the same", FULL, CheckId::Mean, Bug::HitsWithoutDensity),
+    ("bidirectional-technique-twice", "one technique is counted twice in the sum", FULL, CheckId::Mean, Bug::Twice),
+    ("bidirectional-averaged", "techniques are averaged instead of added", FULL, CheckId::Mean, Bug::Averaged),
+    ("bidirectional-same-numbers", "all techniques of a draw begin with the same random numbers", FULL, CheckId::Covariance, Bug::SameNumbers),
+    ("bidirectional-nulls-in-one-density", "null vertices are in the density of a path's own technique only", TRACKED, CheckId::Mean, Bug::NullsInOne),
+    ("bidirectional-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", TRACKED, CheckId::Mean, Bug::TrackedTwice),
+    ("bidirectional-directional-density", "paths are divided by their directional densities, too: the transmittance of a connection cancels", DIRECTIONAL, CheckId::Mean, Bug::DirectionalDensity),
 ];
 
 /// The family.
@@ -130,14 +131,14 @@ impl WalkEvents for Wrong {
         path.light - if is_wrong { 2 } else { 1 }
     }
 
-    fn worth<L: Lane>(&self, path: &Path<L>) -> L {
-        let (worth, s) = (self.page.worth(path), path.light);
+    fn weight<L: Lane>(&self, path: &Path<L>) -> L {
+        let (weight, s) = (self.page.weight(path), path.light);
         let is_hit = |j: usize| j == 0 || j == path.order + 2;
-        let one = worth.each(1.0);
+        let one = weight.each(1.0);
         match self.bug {
-            Bug::VertexCount => worth / Self::camera(path),
+            Bug::VertexCount => weight / Self::camera(path),
             Bug::Reversed if (1..=path.order).contains(&s) => {
-                worth * path.phase[s - 1].one_minus() / path.phase[s - 1]
+                weight * path.phase[s - 1].one_minus() / path.phase[s - 1]
             }
             Bug::HitsWithoutDensity => {
                 let others = (0..path.order + 3).filter(|&j| !is_hit(j));
@@ -147,9 +148,9 @@ impl WalkEvents for Wrong {
                 let all = Self::sum(path, (0..path.order + 3).map(|j| Self::density(path, j)));
                 Self::density(path, s) / all * path.quotient(s)
             }
-            Bug::TrackedTwice => worth * Self::connection(path),
-            Bug::DirectionalDensity => worth / Self::connection(path),
-            _ => worth,
+            Bug::TrackedTwice => weight * Self::connection(path),
+            Bug::DirectionalDensity => weight / Self::connection(path),
+            _ => weight,
         }
     }
 

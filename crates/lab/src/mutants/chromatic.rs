@@ -13,6 +13,7 @@ use estimators::chromatic::{Chromatic, Right, WEIGHING, WalkEvents, WalkerWeight
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::walks::hero::{LastPiece, Weighing};
+use gate::CheckId;
 use numeric::Lane;
 use theory::collisions::particle::Event;
 use theory::colours::{Chance, Chances};
@@ -49,28 +50,28 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_FURNACE: &[Line<Make, Bug>] = &[
-    ("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", FURNACE, "mean", Bug::NullsLeftOut),
-    ("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", FURNACE, "mean", Bug::OtherMajorant),
-    ("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", FURNACE, "mean", Bug::PhaseOfHero),
-    ("spectral-furnace-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", FURNACE, "mean", Bug::AlbedoMissing),
-    ("spectral-furnace-absorbed-whole", "an absorption multiplies f by r, not by r (1 − a)", FURNACE, "mean", Bug::AbsorbedWhole),
-    ("spectral-furnace-dropped", "the last channel is missing from the denominator", FURNACE, "mean", Bug::Dropped),
-    ("spectral-furnace-exit-missing", "the transmittance of the last flight is missing from all densities", FURNACE, "mean", Bug::ExitMissing),
-    ("spectral-furnace-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", FURNACE_TRACKING, "mean", Bug::NullsLeftOut),
-    ("spectral-furnace-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", FURNACE_TRACKING, "mean", Bug::AlbedoMissing),
+    ("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", FURNACE, CheckId::Mean, Bug::NullsLeftOut),
+    ("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", FURNACE, CheckId::Mean, Bug::OtherMajorant),
+    ("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", FURNACE, CheckId::Mean, Bug::PhaseOfHero),
+    ("spectral-furnace-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", FURNACE, CheckId::Mean, Bug::AlbedoMissing),
+    ("spectral-furnace-absorbed-whole", "an absorption multiplies f by r, not by r (1 − a)", FURNACE, CheckId::Mean, Bug::AbsorbedWhole),
+    ("spectral-furnace-dropped", "the last channel is missing from the denominator", FURNACE, CheckId::Mean, Bug::Dropped),
+    ("spectral-furnace-exit-missing", "the transmittance of the last flight is missing from all densities", FURNACE, CheckId::Mean, Bug::ExitMissing),
+    ("spectral-furnace-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", FURNACE_TRACKING, CheckId::Mean, Bug::NullsLeftOut),
+    ("spectral-furnace-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", FURNACE_TRACKING, CheckId::Mean, Bug::AlbedoMissing),
 ];
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_SLAB: &[Line<Make, Bug>] = &[
-    ("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", SLAB, "mean", Bug::NullsLeftOut),
-    ("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", SLAB, "mean", Bug::OtherMajorant),
-    ("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", SLAB, "mean", Bug::PhaseOfHero),
-    ("chromatic-slab-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", SLAB, "mean", Bug::AlbedoMissing),
-    ("chromatic-slab-dropped", "the last channel is missing from the denominator", SLAB, "mean", Bug::Dropped),
-    ("chromatic-slab-exit-missing", "the transmittance of the last flight is missing from all densities", SLAB, "mean", Bug::ExitMissing),
-    ("chromatic-slab-upright", "the transmittance of a flight is that of its depth, not of its length", SLAB, "mean", Bug::Upright),
-    ("chromatic-slab-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", SLAB_TRACKING, "mean", Bug::NullsLeftOut),
-    ("chromatic-slab-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", SLAB_TRACKING, "mean", Bug::AlbedoMissing),
+    ("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", SLAB, CheckId::Mean, Bug::NullsLeftOut),
+    ("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", SLAB, CheckId::Mean, Bug::OtherMajorant),
+    ("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", SLAB, CheckId::Mean, Bug::PhaseOfHero),
+    ("chromatic-slab-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", SLAB, CheckId::Mean, Bug::AlbedoMissing),
+    ("chromatic-slab-dropped", "the last channel is missing from the denominator", SLAB, CheckId::Mean, Bug::Dropped),
+    ("chromatic-slab-exit-missing", "the transmittance of the last flight is missing from all densities", SLAB, CheckId::Mean, Bug::ExitMissing),
+    ("chromatic-slab-upright", "the transmittance of a flight is that of its depth, not of its length", SLAB, CheckId::Mean, Bug::Upright),
+    ("chromatic-slab-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", SLAB_TRACKING, CheckId::Mean, Bug::NullsLeftOut),
+    ("chromatic-slab-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", SLAB_TRACKING, CheckId::Mean, Bug::AlbedoMissing),
 ];
 
 /// Mutants in a furnace.

@@ -12,6 +12,7 @@ use super::line::{self, Notes, RIGHT, Slip};
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::transmittance_curve::double::Curve;
+use gate::CheckId;
 use numeric::Lane;
 use theory::problems::TransmittanceCurve;
 use theory::problems::transmittance::CurveValues;
@@ -39,13 +40,13 @@ const fn step(slip: Slip) -> Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<(), Bug>] = &[
-    ("curve-reversed", "σ_t(S − t) is looked up for σ_t(t)", PLAIN, "curve", step(line::REVERSED)),
-    ("curve-collision-too-early", "the first collision beyond a distance counts before it", PLAIN, "mean", step(line::OF_LAST_COLLISION)),
-    ("curve-shifted", "every value is that of the distance before, and the first is 1", PLAIN, "mean", Bug { finish: shifted, ..NONE }),
-    ("curve-control-whole", "T_c is that of the whole ray at every distance", CONTROL, "mean", Bug { prepare: whole_control, ..NONE }),
-    ("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CONTROL, "mean", Bug { prepare: |setup| setup.fields.control_curve.fill(1.0), ..step(Slip { found: Some(with_decay), ..RIGHT }) }),
-    ("curve-log2", "log2 for ln in the flight", CONTROL, "lookups", step(line::LOG2)),
-    ("curve-of-fresh-walks", "every distance has a walk of its own", PLAIN, "covariance", Bug { is_fresh: true, ..NONE }),
+    ("curve-reversed", "σ_t(S − t) is looked up for σ_t(t)", PLAIN, CheckId::Curve, step(line::REVERSED)),
+    ("curve-collision-too-early", "the first collision beyond a distance counts before it", PLAIN, CheckId::Mean, step(line::OF_LAST_COLLISION)),
+    ("curve-shifted", "every value is that of the distance before, and the first is 1", PLAIN, CheckId::Mean, Bug { finish: shifted, ..NONE }),
+    ("curve-control-whole", "T_c is that of the whole ray at every distance", CONTROL, CheckId::Mean, Bug { prepare: whole_control, ..NONE }),
+    ("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CONTROL, CheckId::Mean, Bug { prepare: |setup| setup.fields.control_curve.fill(1.0), ..step(Slip { found: Some(with_decay), ..RIGHT }) }),
+    ("curve-log2", "log2 for ln in the flight", CONTROL, CheckId::Lookups, step(line::LOG2)),
+    ("curve-of-fresh-walks", "every distance has a walk of its own", PLAIN, CheckId::Covariance, Bug { is_fresh: true, ..NONE }),
 ];
 
 /// The family.

@@ -11,6 +11,7 @@ use super::{Line, Mutant, On, family, filled, on};
 use estimators::lit_rod::shadow::WalkEvents;
 use estimators::lit_rod::walk::ToEmitter;
 use estimators::walks;
+use gate::CheckId;
 use numeric::Lane;
 use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
@@ -47,21 +48,21 @@ pub enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Techniques, Bug>] = &[
-    ("lit-rod-last-segment", "Algorithm 2, line 9: the last segment's transmittance is in the densities, and not in f", FULL, "mean", Bug::LastSegment),
-    ("lit-rod-averaged", "the samples of both techniques are added, and divided by their number", FULL, "mean", Bug::Averaged),
-    ("lit-rod-hit-alone", "Algorithm 1 in the combination: hits are not divided by p_uni + p_nee", FULL, "mean", Bug::HitAlone),
-    ("lit-rod-nulls-in-one", "null collisions are left out of the density of shadow rays only", FULL, "mean", Bug::NullsInOne),
-    ("lit-rod-nulls-missing", "null collisions are left out of the density of hits only", FULL, "mean", Bug::NullsMissing),
-    ("lit-rod-not-reset", "p_nee is not reset at a real scattering: ρ is a product over the path", FULL, "mean", Bug::NotReset),
-    ("lit-rod-unscattered-weighted", "the unscattered hit is weighted as if a shadow ray could find it", FULL, "mean", Bug::UnscatteredWeighted),
-    ("lit-rod-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, "mean", Bug::ShadowTwice),
-    ("lit-rod-found-twice", "what shadow rays find is hit, too", NEXT_EVENT, "mean", Bug::HitAlone),
-    ("lit-rod-albedo-twice", "the albedo is the chance of a scattering and a weight of its shadow ray", NEXT_EVENT, "mean", Bug::AlbedoTwice),
-    ("lit-rod-carried-along", "the walk goes on where its shadow ray ended", NEXT_EVENT, "mean", Bug::CarriedAlong),
-    ("lit-rod-through-scattering", "scattering lets a shadow ray through: only absorption stops it", NEXT_EVENT_DELTA, "mean", Bug::ThroughScattering),
-    ("lit-rod-isotropic", "shadow rays take both directions to be alike", NEXT_EVENT_DELTA, "mean", Bug::Isotropic),
-    ("lit-rod-reversed", "the phase function of a shadow ray is that of the reversed direction", DIRECTIONAL, "mean", Bug::Reversed),
-    ("lit-rod-squared-weights", "the power heuristic squares weights that sum to 1", DIRECTIONAL, "mean", Bug::Squared),
+    ("lit-rod-last-segment", "Algorithm 2, line 9: the last segment's transmittance is in the densities, and not in f", FULL, CheckId::Mean, Bug::LastSegment),
+    ("lit-rod-averaged", "the samples of both techniques are added, and divided by their number", FULL, CheckId::Mean, Bug::Averaged),
+    ("lit-rod-hit-alone", "Algorithm 1 in the combination: hits are not divided by p_uni + p_nee", FULL, CheckId::Mean, Bug::HitAlone),
+    ("lit-rod-nulls-in-one", "null collisions are left out of the density of shadow rays only", FULL, CheckId::Mean, Bug::NullsInOne),
+    ("lit-rod-nulls-missing", "null collisions are left out of the density of hits only", FULL, CheckId::Mean, Bug::NullsMissing),
+    ("lit-rod-not-reset", "p_nee is not reset at a real scattering: ρ is a product over the path", FULL, CheckId::Mean, Bug::NotReset),
+    ("lit-rod-unscattered-weighted", "the unscattered hit is weighted as if a shadow ray could find it", FULL, CheckId::Mean, Bug::UnscatteredWeighted),
+    ("lit-rod-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, CheckId::Mean, Bug::ShadowTwice),
+    ("lit-rod-found-twice", "what shadow rays find is hit, too", NEXT_EVENT, CheckId::Mean, Bug::HitAlone),
+    ("lit-rod-albedo-twice", "the albedo is the chance of a scattering and a weight of its shadow ray", NEXT_EVENT, CheckId::Mean, Bug::AlbedoTwice),
+    ("lit-rod-carried-along", "the walk goes on where its shadow ray ended", NEXT_EVENT, CheckId::Mean, Bug::CarriedAlong),
+    ("lit-rod-through-scattering", "scattering lets a shadow ray through: only absorption stops it", NEXT_EVENT_DELTA, CheckId::Mean, Bug::ThroughScattering),
+    ("lit-rod-isotropic", "shadow rays take both directions to be alike", NEXT_EVENT_DELTA, CheckId::Mean, Bug::Isotropic),
+    ("lit-rod-reversed", "the phase function of a shadow ray is that of the reversed direction", DIRECTIONAL, CheckId::Mean, Bug::Reversed),
+    ("lit-rod-squared-weights", "the power heuristic squares weights that sum to 1", DIRECTIONAL, CheckId::Mean, Bug::Squared),
 ];
 
 /// The family.

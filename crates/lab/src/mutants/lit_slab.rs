@@ -8,6 +8,7 @@ use super::lit_rod::{self, balanced, next_event};
 use super::{Line, Mutant, On, family, filled, on};
 use estimators::lit_slab::walk::{Directions, Right, ToLight};
 use estimators::walks;
+use gate::CheckId;
 use media::phase::Phase;
 use numeric::Lane;
 use theory::light::{Densities, Shadow, Techniques};
@@ -38,16 +39,16 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Techniques, Bug>] = &[
-    ("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", NEXT_EVENT, "mean", Bug::CosineMissing),
-    ("lit-slab-upright", "shadow rays fly as deep as if they went straight down", NEXT_EVENT, "mean", Bug::Upright),
-    ("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", NEXT_EVENT, "mean", Bug::Reversed),
-    ("lit-slab-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, "mean", Bug::Step(lit_rod::Bug::ShadowTwice)),
-    ("lit-slab-areas-mixed", "a hit compares p(μ) per steradian with a density per area of the disc", DIRECTIONAL, "mean", Bug::AreasMixed),
-    ("lit-slab-phase-alone", "a hit is weighted as if p_nee were 1, as in a rod", DIRECTIONAL, "mean", Bug::PhaseAlone),
-    ("lit-slab-hit-alone", "hits are not divided by p_uni + p_nee", FULL, "mean", Bug::Step(lit_rod::Bug::HitAlone)),
-    ("lit-slab-nulls-missing", "null collisions are left out of the density of hits only", FULL, "mean", Bug::Step(lit_rod::Bug::NullsMissing)),
-    ("lit-slab-last-segment", "the last segment's transmittance is in the densities, and not in f", FULL, "mean", Bug::Step(lit_rod::Bug::LastSegment)),
-    ("lit-slab-beam-weighted", "a shadow ray to a beam is weighted as if it could be hit", DISTANT, "mean", Bug::BeamWeighted),
+    ("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", NEXT_EVENT, CheckId::Mean, Bug::CosineMissing),
+    ("lit-slab-upright", "shadow rays fly as deep as if they went straight down", NEXT_EVENT, CheckId::Mean, Bug::Upright),
+    ("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", NEXT_EVENT, CheckId::Mean, Bug::Reversed),
+    ("lit-slab-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, CheckId::Mean, Bug::Step(lit_rod::Bug::ShadowTwice)),
+    ("lit-slab-areas-mixed", "a hit compares p(μ) per steradian with a density per area of the disc", DIRECTIONAL, CheckId::Mean, Bug::AreasMixed),
+    ("lit-slab-phase-alone", "a hit is weighted as if p_nee were 1, as in a rod", DIRECTIONAL, CheckId::Mean, Bug::PhaseAlone),
+    ("lit-slab-hit-alone", "hits are not divided by p_uni + p_nee", FULL, CheckId::Mean, Bug::Step(lit_rod::Bug::HitAlone)),
+    ("lit-slab-nulls-missing", "null collisions are left out of the density of hits only", FULL, CheckId::Mean, Bug::Step(lit_rod::Bug::NullsMissing)),
+    ("lit-slab-last-segment", "the last segment's transmittance is in the densities, and not in f", FULL, CheckId::Mean, Bug::Step(lit_rod::Bug::LastSegment)),
+    ("lit-slab-beam-weighted", "a shadow ray to a beam is weighted as if it could be hit", DISTANT, CheckId::Mean, Bug::BeamWeighted),
 ];
 
 /// The family.

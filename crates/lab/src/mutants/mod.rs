@@ -33,6 +33,7 @@ mod spectral_single_scattering;
 mod sphere;
 pub mod streams;
 
+use gate::CheckId;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -64,7 +65,7 @@ pub struct About {
     /// The experiment that shows it.
     pub target: Target,
     /// The check that must catch it there.
-    pub check: &'static str,
+    pub check: CheckId,
 }
 
 /// Result of drawing one mutant in the place of its estimator.
@@ -79,11 +80,11 @@ pub struct Caught {
     /// The estimator that the mutant replaces.
     pub estimator: String,
     /// The check that must catch it.
-    pub check: &'static str,
+    pub check: CheckId,
     /// The draws that the check took; `None` if it did not catch the bug.
     pub draws: Option<u64>,
     /// All checks that failed.
-    pub failed: Vec<String>,
+    pub failed: Vec<CheckId>,
     /// True if the control passed: the code without the bug.
     pub twin_passes: bool,
 }
@@ -115,7 +116,7 @@ impl<E: Copy> On<E> {
 }
 
 /// A mutant in the table of its family: name, bug in one sentence, target, check, and the bug itself.
-type Line<E, B> = (&'static str, &'static str, On<E>, &'static str, B);
+type Line<E, B> = (&'static str, &'static str, On<E>, CheckId, B);
 
 /// Function that makes the draws of a request, with or without a bug.
 type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
@@ -163,7 +164,7 @@ where
     D: Fn(&Setup<P>, Request) + Send + Sync + 'static,
 {
     let mutant = |(name, bug, on, check, wrong): &Line<E, B>| Mutant {
-        about: About { name, bug, target: on.target, check },
+        about: About { name, bug, target: on.target, check: *check },
         faulty: Arc::new(draws(&on.estimator, wrong)) as Arc<Draws<P>>,
         control: Arc::new(draws(&on.estimator, right)),
         prepare: |_| {},
@@ -260,8 +261,8 @@ families! {
     bidirectional_rod::mutants,
 }
 
-/// Returns the names of the checks that some mutant must be caught by.
-pub fn named_checks() -> Vec<&'static str> {
+/// Returns the checks that some mutant must be caught by.
+pub fn named_checks() -> Vec<CheckId> {
     let abouts = families().into_iter().flat_map(|(_, abouts)| abouts);
     let mut names: Vec<_> = abouts.map(|about| about.check).collect();
     names.sort_unstable();

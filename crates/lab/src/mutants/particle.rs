@@ -16,6 +16,7 @@ use estimators::rod::walk::{self as rod, InRod, RuleAndRoulette};
 use estimators::slab::walk::{self as slab, InSlab};
 use estimators::space::{self, Particle, Splitting, Walked};
 use estimators::walks;
+use gate::CheckId;
 use media::phase::Phase;
 use numeric::Lane;
 use numeric::geometry::Point;
@@ -89,48 +90,48 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_ROD: &[Line<Particle, Bug>] = &[
-    ("rod-albedo-twice", "the albedo is a chance and a weight", ROD_TERMINATING, "mean", Bug::AlbedoTwice),
-    ("rod-albedo-in-transmission", "what goes straight on is multiplied by the albedo too", ROD_WEIGHTED, "mean", Bug::AlbedoStraightOn),
-    ("rod-terminating-beyond", "the terminating rule where r > 2/(a + 1)", ROD_ADAPTIVE, "mean", Bug::Rule(Terminating)),
-    ("rod-sign-lost", "the weight of what goes straight on keeps its sign where r > 1", ROD_NON_TERMINATING, "mean", Bug::SignLost),
-    ("rod-undivided", "what is scattered is not divided by its chance", ROD_NON_TERMINATING, "mean", Bug::Undivided),
-    ("rod-one-number", "the number that decided the collision decides the direction too", ROD_ANALOG, "mean", Bug::OneNumber),
-    ("rod-forward-for-backward", "forward and backward are mixed up", ROD_ANALOG, "mean", Bug::Backward),
-    ("rod-analog-for-weighted", "absorption by roulette and by weight at once", ROD_WEIGHTED, "mean", Bug::AnalogAndWeighted),
-    ("rod-roulette-uncompensated", "what survives roulette keeps its weight", ROD_ROULETTE, "mean", Bug::Uncompensated),
+    ("rod-albedo-twice", "the albedo is a chance and a weight", ROD_TERMINATING, CheckId::Mean, Bug::AlbedoTwice),
+    ("rod-albedo-in-transmission", "what goes straight on is multiplied by the albedo too", ROD_WEIGHTED, CheckId::Mean, Bug::AlbedoStraightOn),
+    ("rod-terminating-beyond", "the terminating rule where r > 2/(a + 1)", ROD_ADAPTIVE, CheckId::Mean, Bug::Rule(Terminating)),
+    ("rod-sign-lost", "the weight of what goes straight on keeps its sign where r > 1", ROD_NON_TERMINATING, CheckId::Mean, Bug::SignLost),
+    ("rod-undivided", "what is scattered is not divided by its chance", ROD_NON_TERMINATING, CheckId::Mean, Bug::Undivided),
+    ("rod-one-number", "the number that decided the collision decides the direction too", ROD_ANALOG, CheckId::Mean, Bug::OneNumber),
+    ("rod-forward-for-backward", "forward and backward are mixed up", ROD_ANALOG, CheckId::Mean, Bug::Backward),
+    ("rod-analog-for-weighted", "absorption by roulette and by weight at once", ROD_WEIGHTED, CheckId::Mean, Bug::AnalogAndWeighted),
+    ("rod-roulette-uncompensated", "what survives roulette keeps its weight", ROD_ROULETTE, CheckId::Mean, Bug::Uncompensated),
 ];
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_SLAB: &[Line<Particle, Bug>] = &[
-    ("slab-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", SLAB_ANALOG, "mean", Bug::Backward),
-    ("slab-albedo-twice", "the albedo is a chance and a weight", SLAB_NON_TERMINATING, "mean", Bug::AlbedoTwice),
-    ("slab-albedo-by-roulette-and-weight", "absorption by roulette and by weight at once", SLAB_WEIGHTED, "mean", Bug::AnalogAndWeighted),
-    ("slab-slant-forgotten", "a slanted flight goes as deep as one straight down", SLAB_ANALOG, "lookups", Bug::Unslanted),
-    ("slab-slant-inverted", "a flight goes u/|μ| deep", SLAB_WEIGHTED, "mean", Bug::SlantInverted),
-    ("slab-even-light", "diffuse light has the law dμ₀, without the cosine", SLAB_DIFFUSE, "mean", Bug::EvenLight),
-    ("slab-terminating-beyond", "the terminating rule where r > 2/(a + 1)", SLAB_ADAPTIVE, "mean", Bug::Rule(Terminating)),
+    ("slab-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", SLAB_ANALOG, CheckId::Mean, Bug::Backward),
+    ("slab-albedo-twice", "the albedo is a chance and a weight", SLAB_NON_TERMINATING, CheckId::Mean, Bug::AlbedoTwice),
+    ("slab-albedo-by-roulette-and-weight", "absorption by roulette and by weight at once", SLAB_WEIGHTED, CheckId::Mean, Bug::AnalogAndWeighted),
+    ("slab-slant-forgotten", "a slanted flight goes as deep as one straight down", SLAB_ANALOG, CheckId::Lookups, Bug::Unslanted),
+    ("slab-slant-inverted", "a flight goes u/|μ| deep", SLAB_WEIGHTED, CheckId::Mean, Bug::SlantInverted),
+    ("slab-even-light", "diffuse light has the law dμ₀, without the cosine", SLAB_DIFFUSE, CheckId::Mean, Bug::EvenLight),
+    ("slab-terminating-beyond", "the terminating rule where r > 2/(a + 1)", SLAB_ADAPTIVE, CheckId::Mean, Bug::Rule(Terminating)),
 ];
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_FURNACE: &[Line<Particle, Bug>] = &[
-    ("furnace-albedo-twice", "the albedo is a chance and a weight", FURNACE_NON_TERMINATING, "mean", Bug::AlbedoTwice),
-    ("furnace-roulette-uncompensated", "who survives roulette keeps the old weight", FURNACE_ROULETTE, "mean", Bug::Uncompensated),
-    ("furnace-terminating-beyond", "the terminating rule where r > 2/(a + 1)", FURNACE_BELOW, "mean", Bug::Rule(Terminating)),
-    ("furnace-number-twice", "one random number for the flight and for what follows it", FURNACE_ANALOG, "mean", Bug::NumberTwice),
+    ("furnace-albedo-twice", "the albedo is a chance and a weight", FURNACE_NON_TERMINATING, CheckId::Mean, Bug::AlbedoTwice),
+    ("furnace-roulette-uncompensated", "who survives roulette keeps the old weight", FURNACE_ROULETTE, CheckId::Mean, Bug::Uncompensated),
+    ("furnace-terminating-beyond", "the terminating rule where r > 2/(a + 1)", FURNACE_BELOW, CheckId::Mean, Bug::Rule(Terminating)),
+    ("furnace-number-twice", "one random number for the flight and for what follows it", FURNACE_ANALOG, CheckId::Mean, Bug::NumberTwice),
 ];
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_INFINITE_MEDIUM: &[Line<Particle, Bug>] = &[
-    ("infinite-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", INFINITE_ANALOG, "mean", Bug::Backward),
-    ("infinite-turned-about-z", "a particle turns about the z axis, not about its direction", INFINITE_ANALOG, "mean", Bug::AboutZ),
-    ("infinite-albedo-twice", "absorption by weight and by roulette at once", INFINITE_WEIGHTED, "mean", Bug::AlbedoTwice),
-    ("infinite-roulette-uncompensated", "who survives roulette keeps the old weight", INFINITE_WEIGHTED, "mean", Bug::Uncompensated),
+    ("infinite-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", INFINITE_ANALOG, CheckId::Mean, Bug::Backward),
+    ("infinite-turned-about-z", "a particle turns about the z axis, not about its direction", INFINITE_ANALOG, CheckId::Mean, Bug::AboutZ),
+    ("infinite-albedo-twice", "absorption by weight and by roulette at once", INFINITE_WEIGHTED, CheckId::Mean, Bug::AlbedoTwice),
+    ("infinite-roulette-uncompensated", "who survives roulette keeps the old weight", INFINITE_WEIGHTED, CheckId::Mean, Bug::Uncompensated),
 ];
 
 #[rustfmt::skip] // one mutant, one entry
 const UNDER_LIGHT: &[Line<Particle, Bug>] = &[
-    ("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, "mean", Bug::EvenLight),
-    ("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, "mean", Bug::StaleMajorant),
+    ("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, CheckId::Mean, Bug::EvenLight),
+    ("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, CheckId::Mean, Bug::StaleMajorant),
 ];
 
 /// Mutants in a rod.

@@ -12,7 +12,7 @@
 
 use numeric::Lane;
 use theory::collisions::Outcome;
-use theory::collisions::rules::{Collision, Met};
+use theory::collisions::rules::{Collision, Extinctions};
 
 /// The albedo of the experiments.
 pub const ALBEDO: f64 = 0.7;
@@ -46,16 +46,16 @@ impl<R: Collision> Collision for Wrong<R> {
     }
 
     #[inline(always)]
-    fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
+    fn absorption<L: Lane>(&self, met: &Extinctions<L>, number: L) -> L::Mask {
         if self.mistake.is_none() {
-            return self.rule.kills(met, number);
+            return self.rule.absorption(met, number);
         }
         self.at(met.ratio()).survival.at_most(number)
     }
 
     #[inline(always)]
-    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
-        self.rule.due(ratio, survival)
+    fn unbiased_weight<L: Lane>(&self, ratio: L, survival: L) -> L {
+        self.rule.unbiased_weight(ratio, survival)
     }
 }
 

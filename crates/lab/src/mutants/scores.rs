@@ -20,6 +20,7 @@ use estimators::transmittance::product::Product;
 use estimators::transmittance::scoring::{Scoring, Share};
 use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
 use estimators::{Draw, Setup, walks};
+use gate::CheckId;
 use media::{Extinction, Lookups};
 use numeric::Lane;
 use numeric::rng::{Stream, unit};
@@ -44,15 +45,15 @@ const MIS: On<Drawing> = known(14, |s, m, r| scored(UnidirectionalMis, &RIGHT, s
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Drawing, Option<Drawing>>] = &[
-    ("next-flight-without-first", "the chance to fly from the beginning straight to the end is left out", NEXT_FLIGHT, "mean", Some(|s, m, r| scored(NextFlight, &Slip { score: Some(|walk, x| x - walk.first), ..RIGHT }, s, m, r))),
-    ("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, "mean", Some(|s, m, r| scored(NextFlight, &Slip { score: Some(|walk, x| x + walk.weight), ..RIGHT }, s, m, r))),
-    ("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, "mean", Some(|s, m, r| scored(WithoutFlight, &RIGHT, s, m, r))),
-    ("mis-unweighted", "next flight and flight count in full, unweighted", MIS, "mean", Some(|s, m, r| scored(Unweighted, &RIGHT, s, m, r))),
-    ("ray-marching", "three steps of ray marching with a random offset, passed off as fair", DENSE, "mean", Some(ray_marching)),
-    ("two-walks-averaged", "the mean of two walks is one draw", BELOW, "variance", Some(averaged)),
-    ("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", DECOMPOSITION, "mean", Some(|s, m, r| decomposition(Residual { subtracted: 0.0, ..Residual::new(s) }, s, m, r))),
-    ("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", DECOMPOSITION, "atoms", Some(|s, m, r| decomposition(Residual { end: f64::NEG_INFINITY, ..Residual::new(s) }, s, m, r))),
-    ("local-majorant-overshoot", "a flight beyond a segment's end goes on from where it came to, not from the boundary", LOCAL_MAJORANT, "mean", Some(|s, m, r| in_segments(&OVERSHOOTS, s, m, r))),
+    ("next-flight-without-first", "the chance to fly from the beginning straight to the end is left out", NEXT_FLIGHT, CheckId::Mean, Some(|s, m, r| scored(NextFlight, &Slip { score: Some(|walk, x| x - walk.first), ..RIGHT }, s, m, r))),
+    ("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, CheckId::Mean, Some(|s, m, r| scored(NextFlight, &Slip { score: Some(|walk, x| x + walk.weight), ..RIGHT }, s, m, r))),
+    ("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, CheckId::Mean, Some(|s, m, r| scored(WithoutFlight, &RIGHT, s, m, r))),
+    ("mis-unweighted", "next flight and flight count in full, unweighted", MIS, CheckId::Mean, Some(|s, m, r| scored(Unweighted, &RIGHT, s, m, r))),
+    ("ray-marching", "three steps of ray marching with a random offset, passed off as fair", DENSE, CheckId::Mean, Some(ray_marching)),
+    ("two-walks-averaged", "the mean of two walks is one draw", BELOW, CheckId::Variance, Some(averaged)),
+    ("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", DECOMPOSITION, CheckId::Mean, Some(|s, m, r| decomposition(Residual { subtracted: 0.0, ..Residual::new(s) }, s, m, r))),
+    ("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", DECOMPOSITION, CheckId::Atoms, Some(|s, m, r| decomposition(Residual { end: f64::NEG_INFINITY, ..Residual::new(s) }, s, m, r))),
+    ("local-majorant-overshoot", "a flight beyond a segment's end goes on from where it came to, not from the boundary", LOCAL_MAJORANT, CheckId::Mean, Some(|s, m, r| in_segments(&OVERSHOOTS, s, m, r))),
 ];
 
 /// The family.

@@ -11,6 +11,7 @@ use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::single_scattering::plan::{Absorption, Vertices};
 use estimators::single_scattering::vertices::{Right, Vertex, WalkEvents};
+use gate::CheckId;
 use numeric::{Lane, Span, elementary};
 use theory::light::Heuristic;
 use theory::problems::{Problem, SingleScattering};
@@ -65,24 +66,24 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Plan, Bug>] = &[
-    ("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", EXACT, "mean", Bug::Unclipped),
-    ("single-cosine-reversed", "the cosine in the phase function has the wrong sign", EXACT, "mean", Bug::Reversed),
-    ("single-pdf-per-angle", "the density is per angle, 1/Δθ, and the integrand per distance", EXACT, "mean", Bug::PerAngle),
-    ("single-pdf-per-solid-angle", "1/r² is counted twice: in the source and as if the density were per solid angle", EXACT, "mean", Bug::PerSolidAngle),
-    ("single-albedo-twice", "the albedo is applied in the source and once more in the draw", EXACT, "mean", Bug::AlbedoTwice),
-    ("single-number-twice", "the walk begins again with the random number that found the point", RATIO, "mean", Bug::NumberTwice),
-    ("single-shadow-from-light-only", "the shadow ray's transmittance is left out", SHADOW, "mean", Bug::Unshadowed),
-    ("null-paths-nulls-left-out", "the density of delta tracking leaves out its null collisions where it was sampled", NULL_PATHS, "mean", Bug::NullsLeftOut),
-    ("null-paths-by-transmittance", "weights take transmittances for null collisions: unbiased, but another estimator", NULL_PATHS, "variance", Bug::ByTransmittance),
-    ("null-paths-nothing-scattered", "a point from the light is worth what it is without σ_t there: no event was sampled", NULL_PATHS, "mean", Bug::NothingScattered),
-    ("null-paths-wrong-end", "the angles of the ray's ends are measured from the wrong one", NULL_PATHS, "mean", Bug::WrongEnd),
-    ("null-paths-averaged", "both techniques are sampled and added, and their average is taken", NULL_PATHS, "mean", Bug::Averaged),
-    ("null-paths-shadow-twice", "the shadow ray's transmittance is a weight twice", NULL_PATHS, "mean", Bug::ShadowTwice),
-    ("null-paths-albedo-twice", "the albedo is the chance to scatter and a factor of what is scattered", NULL_PATHS, "mean", Bug::AlbedoTwice),
-    ("null-paths-absorbed-go-on", "a walk that is absorbed goes on as after a null collision", NULL_PATHS, "mean", Bug::AbsorbedGoOn),
-    ("null-paths-scattering-is-null", "the scattering multiplies its own 1 − σ_t/σ̂ to those of the null collisions", NULL_PATHS, "mean", Bug::ScatteringIsNull),
-    ("null-paths-one-not-doubled", "one technique is chosen and not divided by its chance", ONE_SAMPLE, "mean", Bug::Averaged),
-    ("null-paths-squared-weights", "the power heuristic squares weights that sum to 1", POWER, "mean", Bug::SquaredWeights),
+    ("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", EXACT, CheckId::Mean, Bug::Unclipped),
+    ("single-cosine-reversed", "the cosine in the phase function has the wrong sign", EXACT, CheckId::Mean, Bug::Reversed),
+    ("single-pdf-per-angle", "the density is per angle, 1/Δθ, and the integrand per distance", EXACT, CheckId::Mean, Bug::PerAngle),
+    ("single-pdf-per-solid-angle", "1/r² is counted twice: in the source and as if the density were per solid angle", EXACT, CheckId::Mean, Bug::PerSolidAngle),
+    ("single-albedo-twice", "the albedo is applied in the source and once more in the draw", EXACT, CheckId::Mean, Bug::AlbedoTwice),
+    ("single-number-twice", "the walk begins again with the random number that found the point", RATIO, CheckId::Mean, Bug::NumberTwice),
+    ("single-shadow-from-light-only", "the shadow ray's transmittance is left out", SHADOW, CheckId::Mean, Bug::Unshadowed),
+    ("null-paths-nulls-left-out", "the density of delta tracking leaves out its null collisions where it was sampled", NULL_PATHS, CheckId::Mean, Bug::NullsLeftOut),
+    ("null-paths-by-transmittance", "weights take transmittances for null collisions: unbiased, but another estimator", NULL_PATHS, CheckId::Variance, Bug::ByTransmittance),
+    ("null-paths-nothing-scattered", "a point from the light is worth what it is without σ_t there: no event was sampled", NULL_PATHS, CheckId::Mean, Bug::NothingScattered),
+    ("null-paths-wrong-end", "the angles of the ray's ends are measured from the wrong one", NULL_PATHS, CheckId::Mean, Bug::WrongEnd),
+    ("null-paths-averaged", "both techniques are sampled and added, and their average is taken", NULL_PATHS, CheckId::Mean, Bug::Averaged),
+    ("null-paths-shadow-twice", "the shadow ray's transmittance is a weight twice", NULL_PATHS, CheckId::Mean, Bug::ShadowTwice),
+    ("null-paths-albedo-twice", "the albedo is the chance to scatter and a factor of what is scattered", NULL_PATHS, CheckId::Mean, Bug::AlbedoTwice),
+    ("null-paths-absorbed-go-on", "a walk that is absorbed goes on as after a null collision", NULL_PATHS, CheckId::Mean, Bug::AbsorbedGoOn),
+    ("null-paths-scattering-is-null", "the scattering multiplies its own 1 − σ_t/σ̂ to those of the null collisions", NULL_PATHS, CheckId::Mean, Bug::ScatteringIsNull),
+    ("null-paths-one-not-doubled", "one technique is chosen and not divided by its chance", ONE_SAMPLE, CheckId::Mean, Bug::Averaged),
+    ("null-paths-squared-weights", "the power heuristic squares weights that sum to 1", POWER, CheckId::Mean, Bug::SquaredWeights),
 ];
 
 /// The family.

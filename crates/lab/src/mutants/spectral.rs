@@ -15,7 +15,8 @@ use estimators::Setup;
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_transmittance::events::{Right, WalkEvents};
 use estimators::spectral_transmittance::walk::AlongRay;
-use estimators::walks::hero::Law;
+use estimators::walks::hero::HeroDistribution;
+use gate::CheckId;
 use numeric::Lane;
 use numeric::rng::Random;
 use theory::colours::Chance;
@@ -60,18 +61,18 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Plan, Bug>] = &[
-    ("spectral-choice-free", "the one channel that is drawn is not divided by its probability", INDEPENDENT, "mean", Bug::ChoiceFree),
-    ("spectral-grey", "what the hero finds is scored for all channels", INDEPENDENT, "mean", Bug::Grey),
-    ("spectral-channel-dropped", "the last channel is missing from the denominator", MIS_RATIO, "mean", Bug::Dropped),
-    ("spectral-twice-as-many", "the densities are averaged over 2N techniques, of which N are drawn", MIS_RATIO, "mean", Bug::TwiceAsMany),
-    ("spectral-hero-luminance", "the hero is chosen by the luminance, and weighted as if all were alike", MIS_RATIO, "mean", Bug::ByLuminance),
-    ("spectral-hero-anew", "every collision has a new hero", MIS_DELTA, "mean", Bug::Anew),
-    ("spectral-heros-majorant", "the nulls of all channels are those of the hero's σ̂", MIS_RATIO, "mean", Bug::HerosMajorant),
-    ("spectral-last-stretch", "f and p lack the transmittance of the last stretch (Algorithm 2, line 9, as printed)", MIS_RATIO, "mean", Bug::LastStretch),
-    ("spectral-nulls-in-f-only", "the densities of delta tracking lack the probabilities of null collisions", MIS_DELTA, "mean", Bug::NullsInContributionOnly),
-    ("spectral-own-density", "each channel is divided by its own density", MIS_RATIO, "mean", Bug::OwnDensity),
-    ("spectral-maximum-raw", "the chance max n/μ̄ is not normalised where weights are divided by it", MAXIMUM, "mean", Bug::Raw),
-    ("spectral-history-forgotten", "the chance of history-aware tracking forgets the weights", HISTORY, "variance", Bug::Forgotten),
+    ("spectral-choice-free", "the one channel that is drawn is not divided by its probability", INDEPENDENT, CheckId::Mean, Bug::ChoiceFree),
+    ("spectral-grey", "what the hero finds is scored for all channels", INDEPENDENT, CheckId::Mean, Bug::Grey),
+    ("spectral-channel-dropped", "the last channel is missing from the denominator", MIS_RATIO, CheckId::Mean, Bug::Dropped),
+    ("spectral-twice-as-many", "the densities are averaged over 2N techniques, of which N are drawn", MIS_RATIO, CheckId::Mean, Bug::TwiceAsMany),
+    ("spectral-hero-luminance", "the hero is chosen by the luminance, and weighted as if all were alike", MIS_RATIO, CheckId::Mean, Bug::ByLuminance),
+    ("spectral-hero-anew", "every collision has a new hero", MIS_DELTA, CheckId::Mean, Bug::Anew),
+    ("spectral-heros-majorant", "the nulls of all channels are those of the hero's σ̂", MIS_RATIO, CheckId::Mean, Bug::HerosMajorant),
+    ("spectral-last-stretch", "f and p lack the transmittance of the last stretch (Algorithm 2, line 9, as printed)", MIS_RATIO, CheckId::Mean, Bug::LastStretch),
+    ("spectral-nulls-in-f-only", "the densities of delta tracking lack the probabilities of null collisions", MIS_DELTA, CheckId::Mean, Bug::NullsInContributionOnly),
+    ("spectral-own-density", "each channel is divided by its own density", MIS_RATIO, CheckId::Mean, Bug::OwnDensity),
+    ("spectral-maximum-raw", "the chance max n/μ̄ is not normalised where weights are divided by it", MAXIMUM, CheckId::Mean, Bug::Raw),
+    ("spectral-history-forgotten", "the chance of history-aware tracking forgets the weights", HISTORY, CheckId::Variance, Bug::Forgotten),
 ];
 
 /// The family.
@@ -82,7 +83,7 @@ pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
             let make = if is_common { AlongRay::common } else { AlongRay::new };
             let mut walk = make(setup, &Heroes::Uniform, tracker, Wrong { bug, count });
             if bug == Bug::ByLuminance {
-                walk.law = Law::new(&Heroes::Luminance, count);
+                walk.law = HeroDistribution::new(&Heroes::Luminance, count);
             }
             walk.draw(medium, random)
         })
@@ -104,7 +105,7 @@ impl WalkEvents for Wrong {
         if self.bug != Bug::Anew {
             return hero;
         }
-        Law::new(&Heroes::Uniform, self.count).choose(random.uniform_where(inside))
+        HeroDistribution::new(&Heroes::Uniform, self.count).choose(random.uniform_where(inside))
     }
 
     fn majorant<L: Lane>(&self, own: L, heros: impl Fn() -> L) -> L {

@@ -14,6 +14,7 @@ use estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
 use estimators::spectral_lit_rod::events::{Technique, WalkEvents};
 use estimators::spectral_lit_rod::walk::draw;
 use estimators::walks::hero::{LastPiece, Weighing};
+use gate::CheckId;
 use numeric::Lane;
 use theory::problems::SpectralLitRod;
 
@@ -42,20 +43,20 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Casts, Bug>] = &[
-    ("spectral-lit-last-piece", "Algorithm 2, line 9: f and both densities lack the transmittance of the last piece", FULL, "mean", Bug::Printed(Error::LastPiece)),
-    ("spectral-lit-averaged", "Algorithm 2, line 9: the densities are averaged over 2N techniques, and both samples are added", FULL, "mean", Bug::Printed(Error::Average)),
-    ("spectral-lit-hits-alone", "Algorithm 1 beside shadow rays: hits are divided by p_uni, not by p_uni + p_nee", FULL, "mean", Bug::Printed(Error::HitsAlone)),
-    ("spectral-lit-one-phase", "Algorithm 1, line 14, and Algorithm 2, lines 3 and 5: the phase function is that of the hero in all channels", FULL, "mean", Bug::Printed(Error::OnePhase)),
-    ("spectral-lit-as-printed", "Algorithms 1 and 2 with all errors as printed, and an exit", FULL, "mean", Bug::Printed(Error::All)),
-    ("spectral-lit-exit-missing", "Algorithm 1: f has the transmittance of the flight that leaves, and p has not", HITS, "mean", Bug::ExitMissing),
-    ("spectral-lit-albedo-twice", "Algorithm 1, line 12: what f has of the event is multiplied in once more", HITS, "mean", Bug::AlbedoTwice),
-    ("spectral-lit-phase-of-hero", "Algorithm 1, line 14: neither f nor p has the phase function of its channel", HITS, "mean", Bug::PhaseOfHero),
-    ("spectral-lit-other-majorant", "Algorithm 1, line 8: the chances are those of the hero's σ_t in another channel's σ̂", HITS, "mean", Bug::OtherMajorant),
-    ("spectral-lit-dropped", "the last channel is missing from the denominator", HITS, "mean", Bug::Dropped),
-    ("spectral-lit-not-reset", "p_nee is not reset at a real scattering", FULL, "mean", Bug::NotReset),
-    ("spectral-lit-nulls-in-one", "null collisions of shadow rays are left out of p_uni only", FULL, "mean", Bug::NullsInOne),
-    ("spectral-lit-hero-anew", "every shadow ray has a hero of its own", FULL, "mean", Bug::HeroAnew),
-    ("spectral-lit-unscattered-weighted", "what was never scattered is weighted as if shadow rays could find it", FULL, "mean", Bug::UnscatteredWeighted),
+    ("spectral-lit-last-piece", "Algorithm 2, line 9: f and both densities lack the transmittance of the last piece", FULL, CheckId::Mean, Bug::Printed(Error::LastPiece)),
+    ("spectral-lit-averaged", "Algorithm 2, line 9: the densities are averaged over 2N techniques, and both samples are added", FULL, CheckId::Mean, Bug::Printed(Error::Average)),
+    ("spectral-lit-hits-alone", "Algorithm 1 beside shadow rays: hits are divided by p_uni, not by p_uni + p_nee", FULL, CheckId::Mean, Bug::Printed(Error::HitsAlone)),
+    ("spectral-lit-one-phase", "Algorithm 1, line 14, and Algorithm 2, lines 3 and 5: the phase function is that of the hero in all channels", FULL, CheckId::Mean, Bug::Printed(Error::OnePhase)),
+    ("spectral-lit-as-printed", "Algorithms 1 and 2 with all errors as printed, and an exit", FULL, CheckId::Mean, Bug::Printed(Error::All)),
+    ("spectral-lit-exit-missing", "Algorithm 1: f has the transmittance of the flight that leaves, and p has not", HITS, CheckId::Mean, Bug::ExitMissing),
+    ("spectral-lit-albedo-twice", "Algorithm 1, line 12: what f has of the event is multiplied in once more", HITS, CheckId::Mean, Bug::AlbedoTwice),
+    ("spectral-lit-phase-of-hero", "Algorithm 1, line 14: neither f nor p has the phase function of its channel", HITS, CheckId::Mean, Bug::PhaseOfHero),
+    ("spectral-lit-other-majorant", "Algorithm 1, line 8: the chances are those of the hero's σ_t in another channel's σ̂", HITS, CheckId::Mean, Bug::OtherMajorant),
+    ("spectral-lit-dropped", "the last channel is missing from the denominator", HITS, CheckId::Mean, Bug::Dropped),
+    ("spectral-lit-not-reset", "p_nee is not reset at a real scattering", FULL, CheckId::Mean, Bug::NotReset),
+    ("spectral-lit-nulls-in-one", "null collisions of shadow rays are left out of p_uni only", FULL, CheckId::Mean, Bug::NullsInOne),
+    ("spectral-lit-hero-anew", "every shadow ray has a hero of its own", FULL, CheckId::Mean, Bug::HeroAnew),
+    ("spectral-lit-unscattered-weighted", "what was never scattered is weighted as if shadow rays could find it", FULL, CheckId::Mean, Bug::UnscatteredWeighted),
 ];
 
 /// The family.

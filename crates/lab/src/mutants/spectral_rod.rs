@@ -4,6 +4,7 @@ use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
 use estimators::spectral_rod::walk::{HeroWeights, draw, relative_to};
+use gate::CheckId;
 use media::body::MAX_CHANNELS;
 use theory::problems::{SpectralRod, SpectralSlab};
 
@@ -35,19 +36,19 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_ROD: &[Line<Walker, Bug>] = &[
-    ("spectral-rod-dropped", "the last channel is missing from the denominator", ROD_MIS, "mean", Bug::Dropped),
-    ("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", ROD_MIS, "mean", Bug::AlbedoTwice),
-    ("spectral-rod-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", ROD_MIS, "mean", Bug::Anew),
-    ("spectral-rod-chance-kept", "the weight is not divided by the chance to be scattered", ROD_TRACKING, "mean", Bug::ChanceKept),
-    ("spectral-rod-largest-albedo", "weights are divided by the largest albedo, not by the chance", ROD_TRACKING, "mean", Bug::Largest),
+    ("spectral-rod-dropped", "the last channel is missing from the denominator", ROD_MIS, CheckId::Mean, Bug::Dropped),
+    ("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", ROD_MIS, CheckId::Mean, Bug::AlbedoTwice),
+    ("spectral-rod-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", ROD_MIS, CheckId::Mean, Bug::Anew),
+    ("spectral-rod-chance-kept", "the weight is not divided by the chance to be scattered", ROD_TRACKING, CheckId::Mean, Bug::ChanceKept),
+    ("spectral-rod-largest-albedo", "weights are divided by the largest albedo, not by the chance", ROD_TRACKING, CheckId::Mean, Bug::Largest),
 ];
 
 #[rustfmt::skip] // one mutant, one entry
 const IN_SLAB: &[Line<Walker, Bug>] = &[
-    ("spectral-slab-dropped", "the last channel is missing from the denominator", SLAB_MIS, "mean", Bug::Dropped),
-    ("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SLAB_MIS, "mean", Bug::Anew),
-    ("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SLAB_TRACKING, "mean", Bug::ChanceKept),
-    ("spectral-slab-largest-albedo", "weights are divided by the largest albedo, not by the chance", SLAB_TRACKING, "mean", Bug::Largest),
+    ("spectral-slab-dropped", "the last channel is missing from the denominator", SLAB_MIS, CheckId::Mean, Bug::Dropped),
+    ("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SLAB_MIS, CheckId::Mean, Bug::Anew),
+    ("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SLAB_TRACKING, CheckId::Mean, Bug::ChanceKept),
+    ("spectral-slab-largest-albedo", "weights are divided by the largest albedo, not by the chance", SLAB_TRACKING, CheckId::Mean, Bug::Largest),
 ];
 
 /// Mutants in a rod.

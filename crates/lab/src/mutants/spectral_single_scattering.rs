@@ -10,6 +10,7 @@ use estimators::setup::walker::Walker;
 use estimators::spectral_single_scattering::Shadow;
 use estimators::spectral_single_scattering::events::WalkEvents;
 use estimators::spectral_single_scattering::walk::draw;
+use gate::CheckId;
 use numeric::Lane;
 use theory::colours::{Chance, Chances};
 use theory::problems::SpectralSingleScattering;
@@ -46,15 +47,15 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Make, Bug>] = &[
-    ("spectral-single-nulls-left-out", "null collisions before the scattering are left out of all densities", EXACT, "mean", Bug::NullsLeftOut),
-    ("spectral-single-albedo-missing", "the densities lack the albedo", EXACT, "mean", Bug::AlbedoMissing),
-    ("spectral-single-dropped", "the last channel is missing from the denominator", EXACT, "mean", Bug::Dropped),
-    ("spectral-single-shadow-of-hero", "every channel has the transmittance of the hero's shadow ray", EXACT, "mean", Bug::ShadowOfHero),
-    ("spectral-single-tracked-by-hero", "on tracked shadow rays every channel has the weight of the hero", RATIO, "mean", Bug::ShadowOfHero),
-    ("spectral-single-shadow-not-dense", "the collisions of a shadow ray are left out of the densities of other heroes", RATIO, "mean", Bug::ShadowNotDense),
-    ("spectral-single-hero-shadow-not-dense", "a hero leaves the collisions of its shadow ray out of the other channels' weights", HERO, "mean", Bug::ShadowNotDense),
-    ("spectral-single-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", TRACKING, "mean", Bug::NullsLeftOut),
-    ("spectral-single-tracking-albedo-missing", "spectral tracking multiplies by r, not by r a, where it scatters", TRACKING, "mean", Bug::AlbedoMissing),
+    ("spectral-single-nulls-left-out", "null collisions before the scattering are left out of all densities", EXACT, CheckId::Mean, Bug::NullsLeftOut),
+    ("spectral-single-albedo-missing", "the densities lack the albedo", EXACT, CheckId::Mean, Bug::AlbedoMissing),
+    ("spectral-single-dropped", "the last channel is missing from the denominator", EXACT, CheckId::Mean, Bug::Dropped),
+    ("spectral-single-shadow-of-hero", "every channel has the transmittance of the hero's shadow ray", EXACT, CheckId::Mean, Bug::ShadowOfHero),
+    ("spectral-single-tracked-by-hero", "on tracked shadow rays every channel has the weight of the hero", RATIO, CheckId::Mean, Bug::ShadowOfHero),
+    ("spectral-single-shadow-not-dense", "the collisions of a shadow ray are left out of the densities of other heroes", RATIO, CheckId::Mean, Bug::ShadowNotDense),
+    ("spectral-single-hero-shadow-not-dense", "a hero leaves the collisions of its shadow ray out of the other channels' weights", HERO, CheckId::Mean, Bug::ShadowNotDense),
+    ("spectral-single-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", TRACKING, CheckId::Mean, Bug::NullsLeftOut),
+    ("spectral-single-tracking-albedo-missing", "spectral tracking multiplies by r, not by r a, where it scatters", TRACKING, CheckId::Mean, Bug::AlbedoMissing),
 ];
 
 /// The family.

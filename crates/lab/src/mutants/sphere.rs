@@ -10,6 +10,7 @@ use estimators::space::shadow::Light;
 use estimators::space::{Particle, Splitting};
 use estimators::sphere::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
 use estimators::sphere::{Correct, Method};
+use gate::CheckId;
 use numeric::{Lane, Mask};
 use theory::ParticleRule;
 use theory::light::{Densities, Heuristic};
@@ -92,26 +93,26 @@ enum Bug {
 
 #[rustfmt::skip] // one mutant, one entry
 const LINES: &[Line<Method, Bug>] = &[
-    ("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", NEXT_EVENT_EXACT, "mean", Bug::Through),
-    ("sphere-light-twice", "light that the walk meets counts beside the shadow rays", NEXT_EVENT_SKY, "mean", Bug::Twice),
-    ("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", NEXT_EVENT, "mean", Bug::PerArea),
-    ("sphere-albedo-missing", "a shadow ray has the weight from before the scattering", NEXT_EVENT, "mean", Bug::WithoutAlbedo),
-    ("sphere-mis-hits-alone", "hits are not divided by p_uni + p_nee", DIRECTIONAL, "mean", Bug::HitsAlone),
-    ("sphere-mis-phase-alone", "a hit is weighted as if p_nee were 1 per steradian", DIRECTIONAL, "mean", Bug::PhaseAlone),
-    ("sphere-mis-shadow-twice", "the transmittance of a shadow ray is a weight twice", FULL, "mean", Bug::ShadowTwice),
-    ("sphere-mis-averaged", "samples of both techniques are weighted, added, and divided by their number", FULL, "mean", Bug::Averaged),
-    ("sphere-mis-nulls-in-one", "null collisions are left out of the density of hits only", FULL_SKY, "mean", Bug::NullsInOne),
-    ("sphere-mis-nulls-of-all", "ρ does not begin anew at a scattering: null collisions of all segments are in it", FULL_SKY, "mean", Bug::NullsOfAll),
-    ("sphere-mis-unscattered", "light that was never scattered is weighted as if shadow rays could find it", FULL_SKY, "mean", Bug::Unscattered),
-    ("sphere-mis-two-heuristics", "hits are weighted by the balance heuristic, shadow rays by the power heuristic", POWER, "mean", Bug::TwoHeuristics),
-    ("sphere-connection-without-distance", "1/d² is left out of a connection", BIDIRECTIONAL, "mean", Bug::WithoutDistance),
-    ("sphere-connection-albedo-missing", "a connection leaves out the albedo at the vertex of the light", BIDIRECTIONAL, "mean", Bug::AlbedoMissing),
-    ("sphere-connection-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", BIDIRECTIONAL, "mean", Bug::TrackedTwice),
-    ("sphere-connection-through-light", "connections go through the black sphere", BIDIRECTIONAL, "mean", Bug::ThroughLight),
-    ("sphere-connection-even-emission", "light leaves its surface in all directions alike, without the law of Lambert", BIDIRECTIONAL_SKY, "mean", Bug::EvenEmission),
-    ("sphere-connection-added", "weights of hits and shadow rays do not know of connections, which are added", BIDIRECTIONAL_SKY, "mean", Bug::Added),
-    ("sphere-connection-geometry-in-one", "d² is left out of the density of connections for the paths that others made", BIDIRECTIONAL_SKY, "mean", Bug::GeometryInOne),
-    ("sphere-connection-nulls-missing", "null collisions are left out of the densities of what walks, from the eye and from the light", BIDIRECTIONAL_SKY, "mean", Bug::NullsInOne),
+    ("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", NEXT_EVENT_EXACT, CheckId::Mean, Bug::Through),
+    ("sphere-light-twice", "light that the walk meets counts beside the shadow rays", NEXT_EVENT_SKY, CheckId::Mean, Bug::Twice),
+    ("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", NEXT_EVENT, CheckId::Mean, Bug::PerArea),
+    ("sphere-albedo-missing", "a shadow ray has the weight from before the scattering", NEXT_EVENT, CheckId::Mean, Bug::WithoutAlbedo),
+    ("sphere-mis-hits-alone", "hits are not divided by p_uni + p_nee", DIRECTIONAL, CheckId::Mean, Bug::HitsAlone),
+    ("sphere-mis-phase-alone", "a hit is weighted as if p_nee were 1 per steradian", DIRECTIONAL, CheckId::Mean, Bug::PhaseAlone),
+    ("sphere-mis-shadow-twice", "the transmittance of a shadow ray is a weight twice", FULL, CheckId::Mean, Bug::ShadowTwice),
+    ("sphere-mis-averaged", "samples of both techniques are weighted, added, and divided by their number", FULL, CheckId::Mean, Bug::Averaged),
+    ("sphere-mis-nulls-in-one", "null collisions are left out of the density of hits only", FULL_SKY, CheckId::Mean, Bug::NullsInOne),
+    ("sphere-mis-nulls-of-all", "ρ does not begin anew at a scattering: null collisions of all segments are in it", FULL_SKY, CheckId::Mean, Bug::NullsOfAll),
+    ("sphere-mis-unscattered", "light that was never scattered is weighted as if shadow rays could find it", FULL_SKY, CheckId::Mean, Bug::Unscattered),
+    ("sphere-mis-two-heuristics", "hits are weighted by the balance heuristic, shadow rays by the power heuristic", POWER, CheckId::Mean, Bug::TwoHeuristics),
+    ("sphere-connection-without-distance", "1/d² is left out of a connection", BIDIRECTIONAL, CheckId::Mean, Bug::WithoutDistance),
+    ("sphere-connection-albedo-missing", "a connection leaves out the albedo at the vertex of the light", BIDIRECTIONAL, CheckId::Mean, Bug::AlbedoMissing),
+    ("sphere-connection-tracked-twice", "the tracked transmittance of a connection multiplies its worth twice", BIDIRECTIONAL, CheckId::Mean, Bug::TrackedTwice),
+    ("sphere-connection-through-light", "connections go through the black sphere", BIDIRECTIONAL, CheckId::Mean, Bug::ThroughLight),
+    ("sphere-connection-even-emission", "light leaves its surface in all directions alike, without the law of Lambert", BIDIRECTIONAL_SKY, CheckId::Mean, Bug::EvenEmission),
+    ("sphere-connection-added", "weights of hits and shadow rays do not know of connections, which are added", BIDIRECTIONAL_SKY, CheckId::Mean, Bug::Added),
+    ("sphere-connection-geometry-in-one", "d² is left out of the density of connections for the paths that others made", BIDIRECTIONAL_SKY, CheckId::Mean, Bug::GeometryInOne),
+    ("sphere-connection-nulls-missing", "null collisions are left out of the densities of what walks, from the eye and from the light", BIDIRECTIONAL_SKY, CheckId::Mean, Bug::NullsInOne),
 ];
 
 /// The family.

@@ -8,6 +8,7 @@
 //! means among each other, and so every standard error.
 
 use super::{About, Target, product};
+use gate::CheckId;
 use numeric::rng::{Address, LANES, Streams};
 
 /// The experiment on which they are shown.
@@ -21,7 +22,7 @@ pub struct StreamMutant {
     /// The bug in one sentence.
     pub bug: &'static str,
     /// The check that must catch it.
-    pub check: &'static str,
+    pub check: CheckId,
     /// The streams of a block; [`Address::streams`] is right.
     pub streams: fn(Address) -> Streams,
 }
@@ -36,20 +37,20 @@ impl StreamMutant {
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub const MUTANTS: &[StreamMutant] = &[
-    wrong("stream-one-seed", "every block has the same streams", "streams", |address| block(address, 0)),
-    wrong("stream-pairs", "two neighbouring blocks share their streams", "streams", |address| block(address, address.block / 2)),
-    wrong("stream-recycled", "after four blocks the streams begin anew", "streams", |address| block(address, address.block % 4)),
-    wrong("stream-few-seeds", "the block is hashed to four bits: sixteen sets of streams in no order", "streams", |address| block(address, hashed(address.block) >> 60)),
-    wrong("stream-overlap", "a lane's blocks are parts of one long stream, 512 numbers apart, and use more than that", "generator", |address| advanced(address, 512)),
-    wrong("stream-creeping", "each block's stream is the one before it without its first number", "generator", |address| advanced(address, 1)),
-    wrong("stream-one-lane", "all lanes of a block have the same stream", "generator", |address| Streams { lanes: [address.stream(); LANES], ..address.streams() }),
-    wrong("stream-lanes-shift", "each lane has the stream of its neighbour in the block before", "generator", shifted),
+    wrong("stream-one-seed", "every block has the same streams", CheckId::Streams, |address| block(address, 0)),
+    wrong("stream-pairs", "two neighbouring blocks share their streams", CheckId::Streams, |address| block(address, address.block / 2)),
+    wrong("stream-recycled", "after four blocks the streams begin anew", CheckId::Streams, |address| block(address, address.block % 4)),
+    wrong("stream-few-seeds", "the block is hashed to four bits: sixteen sets of streams in no order", CheckId::Streams, |address| block(address, hashed(address.block) >> 60)),
+    wrong("stream-overlap", "a lane's blocks are parts of one long stream, 512 numbers apart, and use more than that", CheckId::Generator, |address| advanced(address, 512)),
+    wrong("stream-creeping", "each block's stream is the one before it without its first number", CheckId::Generator, |address| advanced(address, 1)),
+    wrong("stream-one-lane", "all lanes of a block have the same stream", CheckId::Generator, |address| Streams { lanes: [address.stream(); LANES], ..address.streams() }),
+    wrong("stream-lanes-shift", "each lane has the stream of its neighbour in the block before", CheckId::Generator, shifted),
 ];
 
 const fn wrong(
     name: &'static str,
     bug: &'static str,
-    check: &'static str,
+    check: CheckId,
     streams: fn(Address) -> Streams,
 ) -> StreamMutant {
     StreamMutant { name, bug, check, streams }

@@ -97,7 +97,10 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
 
 /// Returns the checks that fail beside the one that must.
 fn others(mutant: &Caught) -> String {
-    joined(mutant.failed.iter().filter(|name| *name != mutant.check), ", ")
+    joined(
+        mutant.failed.iter().filter(|check| **check != mutant.check).map(|check| check.name()),
+        ", ",
+    )
 }
 
 table! {
@@ -133,9 +136,9 @@ table! {
         "bug": "Description of the bug" = |mutant| mutant.bug;
         "case": "Case that it is put into" = |mutant| mutant.case;
         "estimator": "Estimator that has it" = |mutant| &mutant.estimator;
-        "check" ["caught by", "", Plain]: "Check that must catch it" = |mutant| mutant.check;
+        "check" ["caught by", "", Plain]: "Check that must catch it" = |mutant| mutant.check.name();
         "draws": "Number of draws until it was caught; empty if it escaped" = |mutant| mutant.draws;
-        "failed": "All checks that fail" = |mutant| mutant.failed.join(" ");
+        "failed": "All checks that fail" = |mutant| joined(mutant.failed.iter().map(|check| check.name()), " ");
         "twin_passes": "Whether the correct estimator passes with the same draws" = |mutant| mutant.twin_passes;
     } screens {
         "place" ["on", "", Plain]: "Case and estimator, as in `rod/known-bugs: analog`" = |mutant| format!("{}: {}", mutant.case, mutant.estimator);

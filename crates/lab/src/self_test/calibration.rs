@@ -11,6 +11,7 @@
 //! is above it. At 99 % each, one of a hundred kept promises would look broken, so the verdict uses limits
 //! at 1 − 1e-6.
 
+use gate::CheckId;
 use std::collections::BTreeMap;
 
 use gate::stats::verdict::{MISS, Verdict};
@@ -64,7 +65,7 @@ impl Rate {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uniformity {
     /// The check.
-    pub check: String,
+    pub check: CheckId,
     /// The rates below 0.1, 0.01 and 0.001.
     pub below: Vec<Rate>,
     /// The p-value of the hypothesis that they are uniform, by Anderson–Darling; `None` for checks
@@ -106,16 +107,16 @@ pub struct Counts {
     failed_runs: u64,
     draws: u64,
     /// Per check: scalars, those that failed, those that passed with a bias.
-    scalars: BTreeMap<String, [u64; 2]>,
-    biased: BTreeMap<String, [u64; 2]>,
-    p: BTreeMap<String, Vec<f64>>,
+    scalars: BTreeMap<CheckId, [u64; 2]>,
+    biased: BTreeMap<CheckId, [u64; 2]>,
+    p: BTreeMap<CheckId, Vec<f64>>,
 }
 
 /// Result of one check in one run.
 #[derive(Debug, Clone)]
 pub struct Checked {
     /// The check.
-    pub check: String,
+    pub check: CheckId,
     /// Verdict of the check.
     pub verdict: Verdict,
     /// True if the check is a scalar, judged by the gate.
@@ -134,7 +135,7 @@ impl Counts {
         self.failed_runs += u64::from(checked.iter().any(|one| one.verdict == Verdict::Fail));
         for Checked { check, verdict, is_scalar, p, .. } in checked {
             if is_scalar {
-                let [all, some] = self.scalars.entry(check.clone()).or_default();
+                let [all, some] = self.scalars.entry(check).or_default();
                 *all += 1;
                 *some += u64::from(verdict == Verdict::Fail);
             }
@@ -176,7 +177,7 @@ impl Counts {
         self,
         scalars: usize,
         laws: usize,
-        is_uniform: impl Fn(&str) -> bool,
+        is_uniform: impl Fn(CheckId) -> bool,
     ) -> Calibration {
         let mut rates = vec![Rate::new("a correct run fails", self.failed_runs, self.runs, ALPHA)];
         let share = 0.8 * ALPHA / scalars.max(1) as f64;
@@ -187,7 +188,7 @@ impl Counts {
             Rate::new(format!("a {check} off by its tolerance passes"), passed, all, MISS)
         }));
         let uniformity =
-            self.p.into_iter().map(|(check, p)| Uniformity::new(is_uniform(&check), check, p));
+            self.p.into_iter().map(|(check, p)| Uniformity::new(is_uniform(check), check, p));
         Calibration {
             runs: self.runs,
             scalars,
@@ -200,7 +201,7 @@ impl Counts {
 }
 
 impl Uniformity {
-    fn new(is_uniform: bool, check: String, mut p: Vec<f64>) -> Self {
+    fn new(is_uniform: bool, check: CheckId, mut p: Vec<f64>) -> Self {
         p.sort_by(f64::total_cmp);
         let all = p.len() as u64;
         let below = [1e-1, 1e-2, 1e-3].map(|level| {

@@ -6,6 +6,7 @@
 
 use crate::mutants::{self, About, Caught, StreamMutant, Target, streams};
 use estimators::{DrawBuffer, Experiment, Refusal};
+use gate::CheckId;
 use gate::causes::Pattern;
 use gate::stats::verdict::BLOCK;
 use numeric::rng::Address;
@@ -37,7 +38,7 @@ pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, Ca
         let twin_passes = stand.has_twin(known) && stand.passes();
         let About { name, bug, target, check } = known.about();
         let judged = stand.faulty(known, Some(check));
-        caught([name, bug, check], &target, judged.as_ref(), twin_passes)
+        caught([name, bug], check, &target, judged.as_ref(), twin_passes)
     })
 }
 
@@ -154,9 +155,9 @@ impl<'a> Stand<'a> {
     }
 
     /// Draws and judges what the plan has at present.
-    fn judged(&mut self, until_failed: Option<&str>) -> Option<Judged> {
+    fn judged(&mut self, until_failed: Option<CheckId>) -> Option<Judged> {
         let plan = self.plan.as_mut()?;
-        plan.options.until_failed = until_failed.map(str::to_owned);
+        plan.options.until_failed = until_failed;
         let draws = run::draw(plan, &|_| {});
         let judged = evaluate::run(plan, &draws).into_iter();
         let findings = judged.flat_map(|one| one.findings).collect();
@@ -191,7 +192,7 @@ impl<'a> Stand<'a> {
     }
 
     /// Judges the draws of a bug.
-    fn faulty(&mut self, known: &Known, until_failed: Option<&str>) -> Option<Judged> {
+    fn faulty(&mut self, known: &Known, until_failed: Option<CheckId>) -> Option<Judged> {
         match known {
             Known::Estimator(about) => {
                 let faulty = self.walk(about, Walk::Faulty)?;
@@ -230,14 +231,15 @@ impl Judged {
     fn pattern(&self) -> Pattern {
         let mut pattern = Pattern::default();
         for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
-            pattern.note(&finding.check, finding.gate.map(|gate| gate.mean));
+            pattern.note(finding.check, finding.gate.map(|gate| gate.mean));
         }
         pattern
     }
 }
 
 fn caught(
-    [name, bug, check]: [&'static str; 3],
+    [name, bug]: [&'static str; 2],
+    check: CheckId,
     target: &Target,
     judged: Option<&Judged>,
     twin_passes: bool,
@@ -247,7 +249,7 @@ fn caught(
         .flat_map(|judged| &judged.findings)
         .filter(|finding| finding.verdict == Verdict::Fail)
         .collect();
-    let mut failed: Vec<String> = failing.iter().map(|finding| finding.check.clone()).collect();
+    let mut failed: Vec<CheckId> = failing.iter().map(|finding| finding.check).collect();
     failed.dedup();
     // A distribution is tested on the plan's fixed draws, a bound on the draws up to its violation.
     let fixed = judged.map_or(0, |judged| judged.fixed);

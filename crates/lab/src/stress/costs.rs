@@ -72,7 +72,8 @@ fn collisions(walk: &Terminating, seen: &mut Seen) -> Option<()> {
     let mesh = Mesh::new(homogeneous(sigma, length));
     let (flown, none) = (Piecewise::constant(sampling, mesh.support()), Control::None);
     let rule = Single::Terminating;
-    let product = Product { laws: false, ..Product::new(&mesh, &flown, &none, &rule) };
+    let product =
+        Product { with_distributions: false, ..Product::new(&mesh, &flown, &none, &rule) };
     let law = product.predict().lookups?;
     let ends = 1.0 - (1.0 - DoubleDouble::from(sigma) / sampling).abs();
     let flown = DoubleDouble::product(sampling, length);

@@ -109,7 +109,9 @@ pub fn products(case: &Case, seen: &mut Seen) {
     let terminating = (0.0..=2.0).contains(&ratio.high).then_some(Single::Terminating);
     let mut of_rule = |name: &str, rule: &dyn Rule, losses: [DoubleDouble; 3]| {
         seen.at(name);
-        let found = Product { laws: false, ..Product::new(&mesh, &flown, &main, rule) }.predict();
+        let found =
+            Product { with_distributions: false, ..Product::new(&mesh, &flown, &main, rule) }
+                .predict();
         let Some(moments) = found.channels[0].moments else {
             seen.skip(0);
             return seen.skip(1);

@@ -277,7 +277,7 @@ fn slab(case: &Coloured, seen: &mut Seen) {
         });
         beyond.and(here).map(|slab| slab.energy(light))
     };
-    let body = Slabs { incidence, mesh: &mesh, sampling: &flown, laws: false };
+    let body = Slabs { incidence, mesh: &mesh, sampling: &flown, with_distributions: false };
     coloured(case, (Box::new(body), &colours), &exact, seen);
 }
 

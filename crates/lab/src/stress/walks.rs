@@ -185,7 +185,7 @@ fn walk(
     depth: f64,
 ) -> Walk {
     let incidence = Incidence { light: Light::Diffuse, phase };
-    Walk { incidence, albedo, rule, pieces, largest_ratio: most, depth, laws: false }
+    Walk { incidence, albedo, rule, pieces, largest_ratio: most, depth, with_distributions: false }
 }
 
 /// The layers of a walk's k-th moments.
@@ -246,7 +246,7 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
     let (rule, flown) = (rule(kind, ratio), depth / ratio);
     let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
     let walk = walk(Phase::Isotropic(Isotropic), (1.0 - absorbed, rule), pieces, ratio, depth);
-    let found = seen.found(0, Walk { laws: true, ..walk.clone() }.lookups(lights))?;
+    let found = seen.found(0, Walk { with_distributions: true, ..walk.clone() }.lookups(lights))?;
     let laws: Vec<CountDistribution> =
         found.into_iter().map(CountDistribution::of_factorial).collect();
     let scale = laws.iter().map(|law| 1.0 + law.variance / law.mean).fold(0.0, f64::max);

@@ -124,7 +124,7 @@ const EVERYWHERE: Aabb = Aabb { low: Point([-1e150; 3]), high: Point([1e150; 3])
 
 #[cfg(test)]
 mod tests {
-    use super::flights::{Flights, Ground};
+    use super::flights::{Flights, MajorantView};
     use super::*;
     use crate::eq21::Eq21;
     use numeric::geometry::Ray;
@@ -140,11 +140,11 @@ mod tests {
     }
 
     /// A flight of one particle.
-    struct Alone<'a>(Ground<'a>, Flights<f64>);
+    struct Alone<'a>(MajorantView<'a>, Flights<f64>);
 
     impl<'a> Alone<'a> {
         fn enter(grid: &'a Majorants, origin: [f64; 3], direction: [f64; 3]) -> Self {
-            let (ground, mut flight) = (Ground::new(grid, None), Flights::new(0.0));
+            let (ground, mut flight) = (MajorantView::new(grid, None), Flights::new(0.0));
             (flight.origin, flight.direction) = (origin, direction);
             flight.enter(&ground, true, &ground.reach([origin, direction], true));
             Self(ground, flight)

@@ -16,5 +16,5 @@ pub use gaps::ConstantWithGaps;
 pub use inverse::Inverse;
 pub(super) use inverse::Table;
 pub use majorants::Majorants;
-pub use majorants::flights::{Flights, Flown, Ground, Reach};
+pub use majorants::flights::{Flights, Flown, MajorantView, Reach};
 pub use piecewise::Piecewise;

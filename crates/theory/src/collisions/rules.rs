@@ -13,7 +13,7 @@ use numeric::Lane;
 
 /// Extinctions at a tentative collision.
 #[derive(Debug, Clone, Copy)]
-pub struct Met<L> {
+pub struct Extinctions<L> {
     /// `σ_t − σ_c`.
     pub residual: L,
     /// `σ̂`.
@@ -22,7 +22,7 @@ pub struct Met<L> {
     pub mean_free_path: L,
 }
 
-impl<L: Lane> Met<L> {
+impl<L: Lane> Extinctions<L> {
     /// `r = (σ_t − σ_c)/σ̂`.
     #[inline(always)]
     pub fn ratio(&self) -> L {
@@ -47,13 +47,13 @@ pub trait Collision: Rule + Copy + 'static {
     /// Returns the lanes with particles that end, given numbers in `[0, 1)`. A particle with the ratio NaN goes on,
     /// so that the draw shows it.
     #[inline(always)]
-    fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
+    fn absorption<L: Lane>(&self, met: &Extinctions<L>, number: L) -> L::Mask {
         self.at(met.ratio()).survival.at_most(number)
     }
 
     /// `(1 − r)/q`: the factor that makes a survivor unbiased.
     #[inline(always)]
-    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
+    fn unbiased_weight<L: Lane>(&self, ratio: L, survival: L) -> L {
         (ratio.each(1.0) - ratio) / survival
     }
 }
@@ -87,7 +87,7 @@ impl Collision for Weight {
     }
 
     #[inline(always)]
-    fn due<L: Lane>(&self, ratio: L, _: L) -> L {
+    fn unbiased_weight<L: Lane>(&self, ratio: L, _: L) -> L {
         ratio.each(1.0) - ratio
     }
 }
@@ -119,13 +119,13 @@ impl Collision for Null {
     /// `(1 − u) σ̂ ≤ σ_t − σ_c`: its left side is computed before the lookup. It is as probable as `u < r`, the
     /// decision of pages without a control.
     #[inline(always)]
-    fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
+    fn absorption<L: Lane>(&self, met: &Extinctions<L>, number: L) -> L::Mask {
         number.times_plus(-met.sampling, met.sampling).at_most(met.residual)
     }
 
     /// A survivor's q is `1 − r` or, where that is clamped, 1: no division is needed.
     #[inline(always)]
-    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
+    fn unbiased_weight<L: Lane>(&self, ratio: L, survival: L) -> L {
         let one = ratio.each(1.0);
         one + ((one - ratio) - survival)
     }
@@ -245,8 +245,11 @@ mod tests {
                 assert!((o.survival * o.weight - (1.0 - r)).abs() < 1e-14, "{rule:?} at {r}");
                 assert!((o.loss - (1.0 - o.weight)).abs() < 1e-14, "{rule:?} at {r}");
                 assert!((o.death - (1.0 - o.survival)).abs() < 1e-14, "{rule:?} at {r}");
-                let due = (1.0 - r) / o.survival;
-                assert!(o.survival == 0.0 || (rule.due(r, o.survival) - due).abs() < 1e-14);
+                let unbiased_weight = (1.0 - r) / o.survival;
+                assert!(
+                    o.survival == 0.0
+                        || (rule.unbiased_weight(r, o.survival) - unbiased_weight).abs() < 1e-14
+                );
             }
         }
     }
@@ -256,28 +259,35 @@ mod tests {
         for step in -40..20 {
             let r = 0.05 * f64::from(step);
             let (null, weight) = (Null.at(r), Weight.at(r));
-            assert!((Null.due(r, null.survival) - (1.0 - r) / null.survival).abs() < 1e-14);
-            assert_eq!(Weight.due(r, weight.survival), (1.0 - r) / weight.survival);
+            assert!(
+                (Null.unbiased_weight(r, null.survival) - (1.0 - r) / null.survival).abs() < 1e-14
+            );
+            assert_eq!(Weight.unbiased_weight(r, weight.survival), (1.0 - r) / weight.survival);
         }
     }
 
     #[test]
     fn null_collisions_are_decided_as_their_chance_says() {
         for sampling in [1.0, 0.3, 1e-9, 1e9] {
-            let met =
-                |r: f64| Met { residual: r * sampling, sampling, mean_free_path: 1.0 / sampling };
+            let met = |r: f64| Extinctions {
+                residual: r * sampling,
+                sampling,
+                mean_free_path: 1.0 / sampling,
+            };
             for step in -40..60 {
                 let r = 0.05 * f64::from(step);
                 for number in [0.0, 1e-17, 0.33, 0.77, 1.0 - 0.5 * f64::EPSILON] {
                     let killed = number >= Null.at(r).survival;
-                    assert_eq!(Null.kills(&met(r), number), killed, "{r}, {number}");
+                    assert_eq!(Null.absorption(&met(r), number), killed, "{r}, {number}");
                 }
             }
             // In spite of rounding, nothing survives at r = 1, and nothing ends at r = 0.
             for number in [0.0, 0.1, 1.0 - 0.5 * f64::EPSILON] {
-                assert!(Null.kills(&met(1.0), number) && !Null.kills(&met(0.0), number));
+                assert!(Null.absorption(&met(1.0), number) && !Null.absorption(&met(0.0), number));
             }
-            assert!(!Null.kills(&met(f64::NAN), 0.0) && Null.kills(&met(f64::INFINITY), 0.0));
+            assert!(
+                !Null.absorption(&met(f64::NAN), 0.0) && Null.absorption(&met(f64::INFINITY), 0.0)
+            );
         }
     }
 

@@ -26,7 +26,7 @@ impl Product<'_> {
     /// Distribution of the number of lookups; `all` are the integrals over the whole of this estimator's own mesh.
     pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountDistribution {
         let law = all.count(mesh.relative_error());
-        if !(self.laws && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
+        if !(self.with_distributions && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
             return law;
         }
         let mut walk = Walk::default();

@@ -34,7 +34,7 @@ pub struct Product<'a> {
     /// is sampled instead of integrated.
     pub killing: f64,
     /// True if the distribution of the lookups and the stable share are computed; a search for optima does without.
-    pub laws: bool,
+    pub with_distributions: bool,
     /// Draws are in units of `exp(−log_unit)`.
     pub log_unit: f64,
 }
@@ -70,7 +70,15 @@ impl<'a> Product<'a> {
         control: &'a Control,
         rule: &'a dyn Rule,
     ) -> Self {
-        Self { mesh, sampling, control, rule, killing: 0.0, laws: true, log_unit: 0.0 }
+        Self {
+            mesh,
+            sampling,
+            control,
+            rule,
+            killing: 0.0,
+            with_distributions: true,
+            log_unit: 0.0,
+        }
     }
 
     fn ratio(&self, t: f64, extinction: f64) -> f64 {
@@ -158,7 +166,7 @@ impl<'a> Product<'a> {
         let mesh = self.mesh(&[]);
         let all = self.integrals(&mesh, &[mesh.support().to])[0];
         let channel = all.channel(mesh.optical_depth(), self.log_unit, mesh.relative_error());
-        let stable_share = if self.laws { self.stable_share(&mesh) } else { None };
+        let stable_share = if self.with_distributions { self.stable_share(&mesh) } else { None };
         let lookups = self.lookups(&mesh, &all);
         Prediction { stable_share, ..Prediction::single(channel, lookups) }
     }

@@ -77,7 +77,7 @@ pub enum NoVariance {
     /// The second moment diverges: the rod would have to end at this distance.
     Diverges(f64),
     /// The second moment is next to its divergence, and known to this relative error only; above 1, it may diverge.
-    Blurred(f64),
+    Unresolved(f64),
     /// The second moment is below the least double that has all its digits.
     Underflows,
     /// The rod has too many panels for theory.
@@ -98,7 +98,7 @@ pub fn has_variance(
     let walk = Walk::new(mesh, rod, Some(sampling), rule);
     walk.exists(2)?;
     let Some(found) = powers(&walk, &rod.channels, 2) else {
-        return Err(NoVariance::Blurred(f64::INFINITY));
+        return Err(NoVariance::Unresolved(f64::INFINITY));
     };
     let is_faint = |known: &Known| known.value * f64::EPSILON < f64::MIN_POSITIVE;
     // Nothing at all is exact.
@@ -108,7 +108,7 @@ pub fn has_variance(
     }
     match blur(&found) {
         blur if blur <= RESOLVED => Ok(()),
-        blur => Err(NoVariance::Blurred(blur)),
+        blur => Err(NoVariance::Unresolved(blur)),
     }
 }
 
@@ -125,16 +125,16 @@ fn powers(walk: &Walk<'_>, channels: &[Quantity], k: i32) -> Option<Vec<Known>> 
 /// Prediction for the walk of a rule through σ̂. It has the expected value alone where [`has_variance`] refuses the
 /// walk, and not even that where the rod is too long.
 ///
-/// Without `laws`, as for lines in plots, only variances and mean lookups are valid.
+/// Without `with_distributions`, as for lines in plots, only variances and mean lookups are valid.
 pub fn predict(
     mesh: &Mesh,
     rod: &Rod,
     sampling: &Piecewise,
     rule: ParticleRule,
-    laws: bool,
+    with_distributions: bool,
 ) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let found = Solved::of(&Walk::new(mesh, rod, Some(sampling), rule), laws);
+    let found = Solved::of(&Walk::new(mesh, rod, Some(sampling), rule), with_distributions);
     let channel = |(index, (quantity, &truth)): (usize, (&Quantity, &Known))| {
         let channel = match &found {
             Some(found) => found.raw[index].channel(truth, RESOLVED),
@@ -175,10 +175,11 @@ struct Solved {
 }
 
 impl Solved {
-    fn of(walk: &Walk<'_>, laws: bool) -> Option<Self> {
+    fn of(walk: &Walk<'_>, with_distributions: bool) -> Option<Self> {
         walk.exists(2).ok()?;
         // The first moment exists wherever the second does; the third is of no use without the fourth.
-        let highest = [8, 4].into_iter().find(|&k| laws && walk.exists(k).is_ok()).unwrap_or(2);
+        let highest =
+            [8, 4].into_iter().find(|&k| with_distributions && walk.exists(k).is_ok()).unwrap_or(2);
         let channels = &walk.rod.channels;
         let is_joint = highest >= 4 && channels.contains(&Quantity::Absorbed);
         let numbers = walk.known(highest, &|line| {

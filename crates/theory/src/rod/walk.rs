@@ -209,7 +209,7 @@ impl<'a> Walk<'a> {
         if line.flow(k).is_some() {
             return Ok(());
         }
-        Err(self.critical(k).map_or(NoVariance::Blurred(f64::INFINITY), NoVariance::Diverges))
+        Err(self.critical(k).map_or(NoVariance::Unresolved(f64::INFINITY), NoVariance::Diverges))
     }
 
     /// Distance at which the k-th moment diverges, in spite of rounding errors: it exists only if the rod ends before
@@ -373,6 +373,6 @@ mod tests {
         for shorter in [1e-12, 1e-6, 0.1] {
             assert_eq!(has_variance(critical * (1.0 - shorter)), Ok(()), "{shorter}");
         }
-        assert_eq!(has_variance(critical), Err(NoVariance::Blurred(f64::INFINITY)));
+        assert_eq!(has_variance(critical), Err(NoVariance::Unresolved(f64::INFINITY)));
     }
 }

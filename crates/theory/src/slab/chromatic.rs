@@ -51,7 +51,7 @@ pub struct Slabs<'a> {
     /// σ̂.
     pub sampling: &'a Piecewise,
     /// True if the distribution of lookups is computed; otherwise they have a mean only.
-    pub laws: bool,
+    pub with_distributions: bool,
 }
 
 impl Slabs<'_> {
@@ -65,7 +65,16 @@ impl Slabs<'_> {
         let pieces = Pieces::new(self.mesh, self.sampling, &kinks, &[self.incidence.light]);
         let depth = self.depth().value;
         heroes.iter().map(move |&(weight, albedo)| {
-            (weight, Walk::analog(self.incidence, albedo, pieces.clone(), depth, self.laws))
+            (
+                weight,
+                Walk::analog(
+                    self.incidence,
+                    albedo,
+                    pieces.clone(),
+                    depth,
+                    self.with_distributions,
+                ),
+            )
         })
     }
 }
@@ -162,13 +171,18 @@ pub struct Spectrum<'a> {
 }
 
 impl<'a> Spectrum<'a> {
-    /// Joins the parts, mesh and σ̂ of each channel; without `laws` lookups have a mean only.
+    /// Joins the parts, mesh and σ̂ of each channel; without `with_distributions` lookups have a mean only.
     pub fn new(
         problem: &'a ChromaticSlab,
         media: Vec<(&'a Mesh, &'a Piecewise)>,
-        laws: bool,
+        with_distributions: bool,
     ) -> Self {
-        let slab = |((mesh, sampling), &incidence)| Slabs { incidence, mesh, sampling, laws };
+        let slab = |((mesh, sampling), &incidence)| Slabs {
+            incidence,
+            mesh,
+            sampling,
+            with_distributions,
+        };
         let slabs = media.into_iter().zip(&problem.incidences).map(slab).collect();
         Self { problem, slabs }
     }
@@ -380,7 +394,8 @@ mod tests {
             let span = Span::new(0.0, 1.7);
             let medium = Medium::new(Arc::new(Constant { extinction: 1.0 }), span, span);
             let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(1.0, span));
-            let slabs = Slabs { incidence, mesh: &mesh, sampling: &sampling, laws: false };
+            let slabs =
+                Slabs { incidence, mesh: &mesh, sampling: &sampling, with_distributions: false };
             let at = critical(&incidence, 1.7);
             assert_eq!(slabs.divergence(0.99 * at), None);
             for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-4] {

@@ -163,9 +163,16 @@ fn the_variance_of_shares_of_thick_slabs_is_at_most_that_of_a_coin() {
         for rule in ParticleRule::ALL {
             for sampling in [1.0, 1.3] {
                 let pieces = Pieces::Exact(vec![Piece::of(sampling * depth, 1.0 / sampling)]);
-                let (largest_ratio, laws) = (1.0 / sampling, true);
-                let walk =
-                    Walk { incidence, albedo: 0.9, rule, pieces, largest_ratio, depth, laws };
+                let (largest_ratio, with_distributions) = (1.0 / sampling, true);
+                let walk = Walk {
+                    incidence,
+                    albedo: 0.9,
+                    rule,
+                    pieces,
+                    largest_ratio,
+                    depth,
+                    with_distributions,
+                };
                 for channel in walk.predict(&truth).channels {
                     let coin = channel.truth.value * (1.0 - channel.truth.value);
                     let Some(moments) = channel.resolved_moments() else { continue };
@@ -202,8 +209,15 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
         let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
         let truth = answers(&incidence.phase, &[light], Known::exact(depth), albedo);
         let truth = truth.expect("finite")[0];
-        let walk =
-            Walk { incidence, albedo, rule, pieces, largest_ratio: ratio, depth, laws: true };
+        let walk = Walk {
+            incidence,
+            albedo,
+            rule,
+            pieces,
+            largest_ratio: ratio,
+            depth,
+            with_distributions: true,
+        };
         (truth, walk.predict(&truth))
     };
     for light in [Light::Collimated(0.5), Light::Diffuse] {
@@ -247,10 +261,18 @@ fn lookups_are_known_where_the_ratio_varies() {
     let sampling = 12.0;
     let (mesh, pieces) = exponential(&[light], sampling);
     let depth = mesh.optical_depth().value;
-    let (rule, laws) = (ParticleRule::NonTerminating, true);
+    let (rule, with_distributions) = (ParticleRule::NonTerminating, true);
     let walk = |light, rule, albedo, pieces| {
         let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
-        Walk { incidence, albedo, rule, pieces, largest_ratio: 10.0 / 12.0, depth, laws }
+        Walk {
+            incidence,
+            albedo,
+            rule,
+            pieces,
+            largest_ratio: 10.0 / 12.0,
+            depth,
+            with_distributions,
+        }
     };
     let Pieces::Graded(cuts) = pieces.clone() else { panic!("varies") };
     let reversed = Pieces::Graded(cuts.map(|cut| cut.into_iter().rev().collect()));

@@ -67,7 +67,7 @@ pub struct Walk {
     /// τ of the slab.
     pub depth: f64,
     /// True if tails and the distribution of the cost are computed, too.
-    pub laws: bool,
+    pub with_distributions: bool,
 }
 
 impl Walk {
@@ -77,10 +77,10 @@ impl Walk {
         albedo: f64,
         pieces: Pieces,
         depth: f64,
-        laws: bool,
+        with_distributions: bool,
     ) -> Self {
         let rule = ParticleRule::Analog;
-        Self { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, laws }
+        Self { incidence, albedo, rule, pieces, largest_ratio: 1.0, depth, with_distributions }
     }
 
     /// Distribution of the lookups of a draw by one of several walks, given the probability of each.
@@ -233,7 +233,7 @@ impl Walk {
 
     /// Returns true if the eighth moments are computed.
     fn has_tails(&self) -> bool {
-        self.laws && (matches!(self.pieces, Pieces::Exact(_)) || self.is_tracking())
+        self.with_distributions && (matches!(self.pieces, Pieces::Exact(_)) || self.is_tracking())
     }
 
     /// `E[X_R^k]` and `E[X_T^k]` in each light; infinite where they diverge, or are not needed.
@@ -291,7 +291,7 @@ impl Walk {
     }
 
     /// Factorial moments of the number of collisions in each light, see [`factorial_moments`], the first only without
-    /// `laws`; `None` where they are not known. Where r varies they are known with few directions only.
+    /// `with_distributions`; `None` where they are not known. Where r varies they are known with few directions only.
     pub fn lookups(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
         let is_quick = match self.pieces {
             Pieces::Exact(_) => true,
@@ -300,7 +300,11 @@ impl Walk {
         if !is_quick {
             return None;
         }
-        if self.laws { self.counts::<Jet<4>>(lights) } else { self.counts::<f64>(lights) }
+        if self.with_distributions {
+            self.counts::<Jet<4>>(lights)
+        } else {
+            self.counts::<f64>(lights)
+        }
     }
 
     /// Factorial moments as the terms of series, as many as a scalar has.

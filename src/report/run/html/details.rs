@@ -1,6 +1,7 @@
 //! Details of an experiment, which open below it: its numbers, the path of the evidence, its plots, and how to repeat it.
 
 use crate::report::html::template::{Markup, html};
+use gate::CheckId;
 
 use super::sparks;
 use crate::record::{Compared, Finding, Row, Score, Verdict};
@@ -101,7 +102,7 @@ fn numbers(row: &Row) -> Markup {
     let lines = lines(row);
     // The first finding of each of the three quantities is in its own line.
     let own = lines.iter().filter_map(|line| line.finding);
-    let mut open: Vec<&str> = own.map(|finding| finding.check.as_str()).collect();
+    let mut open: Vec<CheckId> = own.map(|finding| finding.check).collect();
     let rest = row.findings().filter(|finding| {
         let at = open.iter().position(|check| *check == finding.check && !finding.expects_bias);
         at.map(|at| open.remove(at)).is_none()
@@ -135,9 +136,8 @@ fn numbers(row: &Row) -> Markup {
 
 /// Returns mean, variance and lookups, which every experiment has, and the figure of merit, as far as they are known.
 fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
-    let found = |score: Score| {
-        row.findings().find(|one| one.check == score.quantity() && !one.expects_bias)
-    };
+    let found =
+        |score: Score| row.findings().find(|one| one.check == score.check() && !one.expects_bias);
     let of_score = |score| {
         let values = row.compared(score);
         let name = match score {
@@ -195,13 +195,13 @@ fn says(finding: &Finding) -> Markup {
 /// Returns a check's name, its quantity if that adds something, and the channel.
 fn name(finding: &Finding) -> String {
     let Finding { check, what, channel, .. } = finding;
-    let what = if what.ends_with(check.as_str()) { "" } else { what };
-    joined([check.as_str(), what, channel], ": ")
+    let what = if what.ends_with(check.name()) { "" } else { what };
+    joined([check.name(), what, channel], ": ")
 }
 
 /// Returns a check that passes without a remark, on a line with others.
 fn passing(finding: &Finding) -> String {
-    joined([finding.check.clone(), finding.p.map_or_else(String::new, p)], " ")
+    joined([finding.check.to_string(), finding.p.map_or_else(String::new, p)], " ")
 }
 
 fn p(p: f64) -> String {

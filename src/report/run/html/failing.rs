@@ -34,13 +34,13 @@ pub fn section(record: &Record, verdict: Verdict, title: &str) -> Markup {
 
 /// Returns what the failures of a group share: case, estimator, check.
 fn key<'a>(one: &Failure<'a>) -> [&'a str; 3] {
-    [&one.row.case.name, &one.row.experiment.label, one.check()]
+    [&one.row.case.name, &one.row.experiment.label, one.check_name()]
 }
 
 /// Returns the card of failures of one check of an estimator of a case.
 fn card(failures: &[Failure]) -> Markup {
     let first = &failures[0];
-    let (row, check) = (first.row, first.check());
+    let (row, check) = (first.row, first.check_name());
     let others = failures.len() - 1;
     let label = format!("{}, {}: measured over theory", row.case.name, first.experiment());
     html! {
@@ -68,7 +68,7 @@ const FAIL: RGBAColor = ink(0xB3, 0x12, 0x1D);
 /// without at least one measured value.
 fn figure(failure: &Failure) -> Option<Sheet> {
     let row = failure.row;
-    let of_check = |score: &Score| score.quantity() == failure.check();
+    let of_check = |score: &Score| Some(score.check()) == failure.check();
     let score = Score::ALL.into_iter().find(of_check).unwrap_or(Score::Mean);
     let name = score.quantity();
     let along = row.experiment.swept().and(row.case.sweep.as_ref());

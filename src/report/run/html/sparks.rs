@@ -70,7 +70,10 @@ pub fn evidence(findings: &[&Finding]) -> Markup {
     let line = |finding: &Finding| {
         let limit = finding.gate?.ln_e_limit;
         let point = |&[draws, ln_e]: &[f64; 2]| [draws.log10(), ln_e / limit];
-        Some(Line { name: finding.check.clone(), points: finding.path.iter().map(point).collect() })
+        Some(Line {
+            name: finding.check.to_string(),
+            points: finding.path.iter().map(point).collect(),
+        })
     };
     let lines: Vec<Line> = asked.filter_map(line).collect();
     if lines.is_empty() {

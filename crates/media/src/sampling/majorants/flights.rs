@@ -18,7 +18,7 @@ use numeric::{Lane, Mask, kept};
 
 /// σ̂, and the bounds of flights through it.
 #[derive(Clone, Copy)]
-pub struct Ground<'a> {
+pub struct MajorantView<'a> {
     majorants: &'a Majorants,
     /// σ̂, where it is one constant.
     constant: Option<f64>,
@@ -41,7 +41,7 @@ pub struct Reach<L: Lane> {
     pub stop: Option<(L::Mask, L)>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> MajorantView<'a> {
     /// σ̂, with a black ball in it or without.
     pub fn new(majorants: &'a Majorants, core: Option<(Point, f64)>) -> Self {
         let (cells, low, width, values) = majorants.cells();
@@ -124,7 +124,7 @@ impl<L: Lane> Flights<L> {
 
     /// Begins the flights of the lanes in `which`, from their origins in their directions.
     #[inline(always)]
-    pub fn enter(&mut self, ground: &Ground, which: L::Mask, reach: &Reach<L>) {
+    pub fn enter(&mut self, ground: &MajorantView, which: L::Mask, reach: &Reach<L>) {
         let Reach { ends: [_, end], stop } = *reach;
         let zero = end.each(0.0);
         self.end.set_where(which, end);
@@ -139,7 +139,7 @@ impl<L: Lane> Flights<L> {
 
     /// The cells of the lanes in `which` and the distances to the planes ahead; unchanged for the others.
     #[inline(always)]
-    fn cells_entered(mut self, ground: &Ground, which: L::Mask) -> ([L; 3], [L; 3]) {
+    fn cells_entered(mut self, ground: &MajorantView, which: L::Mask) -> ([L; 3], [L; 3]) {
         self.t.outlined_if_narrow(
             #[inline(always)]
             move || {
@@ -167,7 +167,7 @@ impl<L: Lane> Flights<L> {
     #[inline(always)]
     pub fn fly(
         &mut self,
-        ground: &Ground,
+        ground: &MajorantView,
         which: L::Mask,
         depth: L,
         through: impl Fn(L, L) -> L,
@@ -202,7 +202,7 @@ impl<L: Lane> Flights<L> {
     #[inline(always)]
     fn across_cells(
         mut self,
-        ground: &Ground,
+        ground: &MajorantView,
         mut on_its_way: L::Mask,
         depth: L,
         through: impl Fn(L, L) -> L,

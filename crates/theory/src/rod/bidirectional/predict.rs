@@ -17,12 +17,17 @@ fn resolutions(depth: f64) -> [[f64; 2]; 2] {
     [[nodes, 0.3], [nodes + 8.0, 0.25]]
 }
 
-/// Prediction for a draw. The number of lookups is known where `σ_t/σ̂` has one value, `ratio`. Without `laws`, as
+/// Prediction for a draw. The number of lookups is known where `σ_t/σ̂` has one value, `ratio`. Without `with_distributions`, as
 /// for lines in plots, only values are valid, and no error is computed.
-pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> Prediction {
+pub fn predict(
+    scene: &Scene,
+    rules: &Rules,
+    ratio: Option<f64>,
+    with_distributions: bool,
+) -> Prediction {
     let [coarse, fine] = resolutions(scene.depth.value);
     let found = powers(scene, rules, fine);
-    let rough = if laws { powers(scene, rules, coarse) } else { found.clone() };
+    let rough = if with_distributions { powers(scene, rules, coarse) } else { found.clone() };
     let names = names(scene, rules);
     let is_certain = |&(order, s, _): &(usize, usize, _)| {
         order == 0 && s == 1 && rules.connection == Connection::Exact

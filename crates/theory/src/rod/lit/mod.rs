@@ -38,16 +38,16 @@ pub fn is_within_reach(mesh: &Mesh, problem: &LitRod, sampling: &Piecewise) -> b
 
 /// Prediction for walks with techniques through σ̂.
 ///
-/// Without `laws`, as for lines in plots, only variances and mean lookups are valid.
+/// Without `with_distributions`, as for lines in plots, only variances and mean lookups are valid.
 pub fn predict(
     mesh: &Mesh,
     problem: &LitRod,
     sampling: &Piecewise,
     techniques: Techniques,
-    laws: bool,
+    with_distributions: bool,
 ) -> Prediction {
     let answer = answer(mesh, problem);
-    let found = WalkMoments::of(mesh, problem, sampling, techniques, laws);
+    let found = WalkMoments::of(mesh, problem, sampling, techniques, with_distributions);
     let Some(WalkMoments { lookups, shadow_lookups, raw }) = found else {
         return Prediction::uncounted(Channel::unbiased(answer, None, Tails::LIGHT));
     };
@@ -72,16 +72,16 @@ pub struct WalkMoments {
 }
 
 impl WalkMoments {
-    /// Raw moments of walks with techniques through σ̂; `None` where theory has no answer. Without `laws` the first
+    /// Raw moments of walks with techniques through σ̂; `None` where theory has no answer. Without `with_distributions` the first
     /// two only.
     pub fn of(
         mesh: &Mesh,
         problem: &LitRod,
         sampling: &Piecewise,
         techniques: Techniques,
-        laws: bool,
+        with_distributions: bool,
     ) -> Option<Self> {
-        let highest = if laws { HIGHEST } else { 2 };
+        let highest = if with_distributions { HIGHEST } else { 2 };
         let numbers = walk(mesh, &problem.rod, sampling).known(2, &|line| {
             let mut numbers = moments::lookups(line, techniques)?.to_vec();
             numbers.extend(moments::scattered(line, techniques, highest)?);

@@ -52,13 +52,13 @@ pub fn slant_depth(mesh: &Mesh, problem: &LitSlab) -> Option<f64> {
 
 /// Prediction for draws of techniques through σ̂.
 ///
-/// Without `laws`, as for lines in plots, only variances and mean lookups are valid.
+/// Without `with_distributions`, as for lines in plots, only variances and mean lookups are valid.
 pub fn predict(
     mesh: &Mesh,
     problem: &LitSlab,
     sampling: &Piecewise,
     techniques: Techniques,
-    laws: bool,
+    with_distributions: bool,
 ) -> Prediction {
     if slant_depth(mesh, problem).is_some() {
         let channels = vec![Channel::unbiased(Known::UNKNOWN, None, Tails::LIGHT)];
@@ -66,7 +66,7 @@ pub fn predict(
     }
     let truth = truth(mesh, problem, sampling);
     let techniques = possible(techniques, problem.light);
-    let highest = if laws { HIGHEST } else { 2 };
+    let highest = if with_distributions { HIGHEST } else { 2 };
     let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
         .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, highest), &resolution));
     let raw = RawMoments(std::array::from_fn(|i| {

@@ -97,14 +97,16 @@ impl<'a> Spectrum<'a> {
         self.heroes.len()
     }
 
-    /// Prediction for a draw. Without `laws`, as for lines in plots, only variances and mean lookups are valid.
-    pub fn predict(&self, laws: bool) -> Prediction {
+    /// Prediction for a draw. Without `with_distributions`, as for lines in plots, only variances and mean lookups are valid.
+    pub fn predict(&self, with_distributions: bool) -> Prediction {
         let techniques = self.tracker.techniques();
         let found: Option<Vec<WalkMoments>> = self
             .media
             .iter()
             .zip(&self.problem.rods)
-            .map(|((mesh, sampling), rod)| WalkMoments::of(mesh, rod, sampling, techniques, laws))
+            .map(|((mesh, sampling), rod)| {
+                WalkMoments::of(mesh, rod, sampling, techniques, with_distributions)
+            })
             .collect();
         let forward = Forward::new(self.problem, &self.media, &self.heroes);
         let lookups = match (self.tracker, &forward) {
@@ -125,24 +127,26 @@ impl<'a> Spectrum<'a> {
             (Tracker::Tracking(chances), forward) => {
                 forward.as_ref().and_then(|forward| forward.tracking(chances))
             }
-            (Tracker::Mis { .. }, _) if self.channels() > 1 => self.by_orders(laws).or_else(|| {
-                let is_hits = self.tracker.techniques() == HITS;
-                forward.filter(|_| is_hits)?.balanced()
-            }),
+            (Tracker::Mis { .. }, _) if self.channels() > 1 => {
+                self.by_orders(with_distributions).or_else(|| {
+                    let is_hits = self.tracker.techniques() == HITS;
+                    forward.filter(|_| is_hits)?.balanced()
+                })
+            }
             _ => found.map(|found| self.independent(&found)),
         };
         let answers = self.media.iter().zip(&self.problem.rods);
         let answers: Vec<Known> = answers.map(|((mesh, _), rod)| lit::answer(mesh, rod)).collect();
         let channel = |(index, &answer): (usize, &Known)| match &moments {
             Some(moments) => moments.raw[index].channel(answer, RESOLVED),
-            None => match self.most_square(index, answer).filter(|_| laws) {
+            None => match self.most_square(index, answer).filter(|_| with_distributions) {
                 Some(square) => Channel::bounded(answer, square),
                 None => Channel::unbiased(answer, None, Tails::LIGHT),
             },
         };
         let channels = colours::named(answers.iter().enumerate().map(channel).collect());
         let mut covariances = Vec::new();
-        if let Some(moments) = moments.filter(|_| laws) {
+        if let Some(moments) = moments.filter(|_| with_distributions) {
             for (index, mixed) in moments.mixed.iter().enumerate() {
                 let means = [answers[index].value, answers[index + 1].value];
                 let squares = [index, index + 1].map(|channel| moments.raw[channel].second().value);
@@ -176,7 +180,7 @@ impl<'a> Spectrum<'a> {
     }
 
     /// Moments where all channels have the same σ_t and σ̂.
-    fn by_orders(&self, laws: bool) -> Option<Moments> {
+    fn by_orders(&self, with_distributions: bool) -> Option<Moments> {
         let &[(mesh, sampling), ref others @ ..] = &self.media[..] else { return None };
         let nodes: Vec<f64> = mesh.panels().flat_map(|panel| panel.t.iter().copied()).collect();
         let here = mesh.medium().extinctions(&nodes);
@@ -189,6 +193,6 @@ impl<'a> Spectrum<'a> {
             return None;
         }
         let orders = Orders::new(self.problem, mesh, &self.heroes, self.tracker.techniques())?;
-        orders.moments(sampling, laws)
+        orders.moments(sampling, with_distributions)
     }
 }

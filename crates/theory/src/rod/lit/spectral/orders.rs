@@ -97,10 +97,10 @@ impl<'a> Orders<'a> {
     }
 
     /// `E[X^k]` of each channel with absolute errors for k = 1, 2, 3, 4 and 8, and mixed moments of each channel and
-    /// the next. Without `laws` the first two only.
-    pub fn moments(&self, sampling: &Piecewise, laws: bool) -> Option<Moments> {
+    /// the next. Without `with_distributions` the first two only.
+    pub fn moments(&self, sampling: &Piecewise, with_distributions: bool) -> Option<Moments> {
         let rod = &self.problem.rods[0].rod;
-        let highest = POWERS_OF_ONE[usize::from(laws)];
+        let highest = POWERS_OF_ONE[usize::from(with_distributions)];
         let (monomials, terms) = monomials(self.heroes.len(), highest);
         let numbers = walk(self.mesh, rod, sampling)
             .known(2, &|line| self.entering(line, highest, &monomials, &terms))?;
