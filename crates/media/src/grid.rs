@@ -50,13 +50,13 @@ use std::sync::Arc;
 
 use super::cells::Cells;
 use super::cubics::Cubics;
-use super::grid_file::Format;
 use super::grid_settings::{
     contents, format, no_placement, own_bounds, random, read_bounds, read_placement, read_samples,
 };
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, Smoothness};
 use crate::catalogue::{Domain, Settings};
+use crate::formats::Format;
 use numeric::geometry::{Aabb, Bounds, Ray};
 use numeric::{Known, Lane, Span};
 

@@ -16,6 +16,7 @@ use super::grid_vdb;
 use crate::files::number::Number;
 use crate::files::vol::Vol;
 use crate::files::{npy, nvdb, pbrt, vdb};
+use crate::formats::Format;
 use numeric::digits::number;
 use numeric::geometry::{Aabb, Point};
 
@@ -45,45 +46,12 @@ pub struct Turned {
     pub steps: [[f64; 3]; 3],
 }
 
-pub use crate::files::Fault as Unreadable;
+pub use crate::files::Unreadable;
 
 /// The largest number of samples, 1 GiB of doubles.
 pub const MAX_SAMPLES: u64 = 1 << 27;
 
-/// A format of grids.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Mitsuba's `.vol`.
-    Vol,
-    /// `NumPy`'s `.npy`.
-    Npy,
-    /// `OpenVDB`'s `.vdb`.
-    Vdb,
-    /// `NanoVDB`'s `.nvdb`.
-    Nvdb,
-    /// A scene file of pbrt.
-    Pbrt,
-}
-
 impl Format {
-    /// The format of a file's extension, in upper or lower case.
-    pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        let all = [Self::Vol, Self::Npy, Self::Vdb, Self::Nvdb, Self::Pbrt];
-        all.into_iter().find(|format| format.ending()[1..].eq_ignore_ascii_case(extension))
-    }
-
-    /// Extension.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Vol => ".vol",
-            Self::Npy => ".npy",
-            Self::Vdb => ".vdb",
-            Self::Nvdb => ".nvdb",
-            Self::Pbrt => ".pbrt",
-        }
-    }
-
     /// Returns true if the file has the positions of its voxels.
     pub fn has_transform(self) -> bool {
         matches!(self, Self::Vdb | Self::Nvdb)
@@ -106,15 +74,36 @@ pub struct Choice {
     pub axes: Axes,
 }
 
+/// Function that reads a grid from the bytes of a file.
+pub type Reader = fn(&[u8], &Choice) -> Result<Samples, Unreadable>;
+
+/// Returns the reader of grids of a format; `None` for formats that hold none.
+pub fn reader(format: Format) -> Option<Reader> {
+    Some(match format {
+        Format::Vol => |bytes, choice| read_vol(bytes, choice.channel),
+        Format::Npy => |bytes, choice| read_npy(bytes, choice.axes),
+        Format::Vdb => {
+            |bytes, choice| grid_vdb::samples(&vdb::read(bytes, choice.grid.as_deref())?)
+        }
+        Format::Nvdb => {
+            |bytes, choice| grid_vdb::samples(&nvdb::read(bytes, choice.grid.as_deref())?)
+        }
+        Format::Pbrt => |bytes, choice| read_pbrt(bytes, choice.grid.as_deref()),
+        Format::Exr | Format::Pfm | Format::Table | Format::Doubles | Format::Singles => {
+            return None;
+        }
+    })
+}
+
 /// Reads a grid.
 ///
 /// # Errors
 ///
 /// The file is no grid of finite, non-negative samples.
 pub fn read(path: &Path, choice: &Choice) -> Result<Samples, Unreadable> {
-    let Some(format) = Format::of(path) else {
-        let message = "the file is none of .vol, .npy, .vdb, .nvdb and .pbrt";
-        return wrong(message, "convert it to one of them");
+    let Some(reader) = Format::of(path).and_then(reader) else {
+        let grids = Format::list(|format| reader(format).is_some());
+        return wrong(format!("the file is none of {grids}"), "convert it to one of them");
     };
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
@@ -122,14 +111,7 @@ pub fn read(path: &Path, choice: &Choice) -> Result<Samples, Unreadable> {
             return wrong(error.to_string(), "the name is relative to the case file's folder");
         }
     };
-    let grid = choice.grid.as_deref();
-    let samples = match format {
-        Format::Vol => read_vol(&bytes, choice.channel),
-        Format::Npy => read_npy(&bytes, choice.axes),
-        Format::Vdb => grid_vdb::samples(&vdb::read(&bytes, grid)?),
-        Format::Nvdb => grid_vdb::samples(&nvdb::read(&bytes, grid)?),
-        Format::Pbrt => read_pbrt(&bytes, grid),
-    }?;
+    let samples = reader(&bytes, choice)?;
     match samples.values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
         None => Ok(samples),
         Some(index) => {

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::axes::Axes;
-use super::grid_file::{self, Choice, Format, MAX_SAMPLES, Samples};
+use super::grid_file::{self, Choice, MAX_SAMPLES, Samples};
 use super::voxels::Placement;
 use super::{body, lattice};
 use crate::catalogue::{Settings, Value};
+use crate::formats::Format;
 use numeric::digits::short;
 use numeric::geometry::{Aabb, Bounds, Point};
 
@@ -45,19 +46,20 @@ pub(super) fn read_samples(settings: &Settings) -> Option<Samples> {
 /// Part of the file that is read; each setting applies to some formats only.
 fn read_choice(settings: &Settings) -> Option<Choice> {
     let format = format(settings);
-    let is_for = |key: &'static str, takes: fn(Format) -> bool, of: &str| {
+    let is_for = |key: &'static str, takes: fn(Format) -> bool, more: &str| {
         let is_right = !settings.has(key) || format.is_some_and(takes);
         if !is_right {
             let what = format.map_or("samples of this kind", Format::ending);
             let message = format!("`{key}` has no say in {what}");
-            settings.fault(key, message, format!("leave it out: it is for {of}"));
+            let of = Format::list(takes);
+            settings.fault(key, message, format!("leave it out: it is for {of}{more}"));
         }
         is_right
     };
     let is_right = [
-        is_for("axes", |format| format == Format::Npy, ".npy; other formats say which axis is x"),
-        is_for("channel", |format| format == Format::Vol, ".vol"),
-        is_for("grid", Format::has_names, ".vdb, .nvdb and .pbrt"),
+        is_for("axes", |format| format == Format::Npy, "; other formats say which axis is x"),
+        is_for("channel", |format| format == Format::Vol, ""),
+        is_for("grid", Format::has_names, ""),
     ];
     if is_right.contains(&false) {
         return None;

@@ -15,6 +15,7 @@ pub mod eq21;
 pub mod exponential;
 pub mod field;
 pub mod files;
+pub mod formats;
 pub mod gaussian;
 pub mod grid;
 pub mod grid_file;

@@ -7,12 +7,12 @@ use std::path::Path;
 use super::{Item, Spread};
 use crate::judge::files::{Column, Draws, Format};
 use media::files::exr::{self, Part};
-use media::files::{Fault, Pixels, pfm, wrong};
+use media::files::{Pixels, Unreadable, pfm, wrong};
 
 const PIXELS: &str = "pixels (columns, rows)";
 
 /// Returns the parts of an `OpenEXR` file.
-pub fn exr(bytes: Vec<u8>) -> Result<Vec<Item>, Fault> {
+pub fn exr(bytes: Vec<u8>) -> Result<Vec<Item>, Unreadable> {
     let whole = "write it by OpenEXR, to its end";
     let parts = exr::parts(&bytes).or_else(|cause| wrong(cause, whole))?;
     let mut items: Vec<Item> = parts.iter().map(|part| item(part, parts.len() > 1)).collect();
@@ -67,7 +67,7 @@ fn item(part: &Part, is_one_of_several: bool) -> Item {
 }
 
 /// Returns the picture of a PFM file.
-pub fn pfm(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+pub fn pfm(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     let cure = "write Pf or PF, columns, rows, -1 and all values as float32";
     let pixels = pfm::read(bytes).or_else(|cause| wrong(cause, cure))?;
     let Pixels { size: [columns, rows], channels, values, .. } = pixels;

@@ -9,12 +9,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::output::{self, Errors, Format};
+use super::output::{self, Errors};
 use super::{Console, USAGE};
 use crate::json;
-use crate::judge::files as draws_files;
-use media::files::Fault;
-use media::grid_file;
+use media::files::Unreadable;
+use media::formats::Format;
 use numeric::digits::{count, short};
 
 /// Arguments of `inspect`.
@@ -25,7 +24,7 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     /// Format of the grids, images and columns that are printed
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: output::Format,
 }
 
 /// Prints the content of each file. A file that cannot be read is an error, and the others are still printed.
@@ -36,10 +35,10 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         items.extend(errors.keep(found));
     }
     let text = match arguments.format {
-        Format::Table if console.quiet => String::new(),
-        Format::Table => table(&items),
-        Format::Csv => csv(&items)?,
-        Format::Json => json::pretty(&items)? + "\n",
+        output::Format::Table if console.quiet => String::new(),
+        output::Format::Table => table(&items),
+        output::Format::Csv => csv(&items)?,
+        output::Format::Json => json::pretty(&items)? + "\n",
     };
     output::print(&text)?;
     Ok(if errors.is_empty() { 0 } else { errors.close(USAGE) })
@@ -50,22 +49,23 @@ fn inspected(path: &Path) -> anyhow::Result<Vec<Item>> {
     if std::fs::metadata(path)?.is_dir() {
         bail!("it is a folder; give the files in it");
     }
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let ending = ending.to_ascii_lowercase();
-    let items = match ending.as_str() {
-        "npy" => volumes::array(&std::fs::read(path)?),
-        "exr" => images::exr(std::fs::read(path)?),
-        "pfm" => images::pfm(&std::fs::read(path)?),
-        _ => match grid_file::Format::of(path) {
-            Some(format) => volumes::items(format, &std::fs::read(path)?),
-            None if draws_files::Format::of_path(path).is_some() => return images::draws(path),
-            None => bail!(
-                "its ending is none that is read: vol, npy, vdb, nvdb, pbrt, exr, pfm, csv, txt, f64, f32, bin, raw; rename \
-                 or convert it"
-            ),
-        },
+    let Some(format) = Format::of(path) else {
+        let all = Format::list(|_| true);
+        bail!("its ending is none that is read: {all}; rename or convert it");
     };
-    let items = items.map_err(|Fault { message, help }| anyhow::anyhow!("{message}; {help}"))?;
+    let bytes = || std::fs::read(path);
+    let items = match format {
+        Format::Vol => volumes::of_vol(&bytes()?),
+        Format::Npy => volumes::array(&bytes()?),
+        Format::Vdb => volumes::of_vdb(&bytes()?),
+        Format::Nvdb => volumes::of_nvdb(&bytes()?),
+        Format::Pbrt => volumes::of_pbrt(&bytes()?),
+        Format::Exr => images::exr(bytes()?),
+        Format::Pfm => images::pfm(&bytes()?),
+        Format::Table | Format::Doubles | Format::Singles => return images::draws(path),
+    };
+    let items =
+        items.map_err(|Unreadable { message, help }| anyhow::anyhow!("{message}; {help}"))?;
     let file = path.display().to_string();
     Ok(items.into_iter().map(|item| Item { file: file.clone(), ..item }).collect())
 }

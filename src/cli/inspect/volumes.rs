@@ -3,23 +3,11 @@
 use super::{Item, Spread};
 use media::files::number::Number;
 use media::files::vdb::{Grid, Transform};
-use media::files::{Fault, npy, nvdb, pbrt, vdb, vol::Vol, wrong};
-use media::grid_file::Format;
+use media::files::{Unreadable, npy, nvdb, pbrt, vdb, vol::Vol, wrong};
 use media::grid_vdb;
 use numeric::digits::number;
 
 const VOXELS: &str = "voxels (x, y, z)";
-
-/// Returns the grids of a file.
-pub fn items(format: Format, bytes: &[u8]) -> Result<Vec<Item>, Fault> {
-    match format {
-        Format::Vol => of_vol(bytes),
-        Format::Pbrt => of_pbrt(bytes),
-        Format::Vdb => of_vdb(bytes),
-        Format::Nvdb => of_nvdb(bytes),
-        Format::Npy => array(bytes),
-    }
-}
 
 /// Adds a note that an item cannot be a medium, if a value is negative or not finite.
 fn doubt(item: &mut Item, spread: &Spread) {
@@ -40,7 +28,8 @@ fn place(item: &mut Item, [low, high]: [[f64; 3]; 2]) {
     }
 }
 
-fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+/// Returns the channels of a grid of Mitsuba.
+pub fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     let vol = Vol::read(bytes)?;
     if vol.size.contains(&0) {
         return wrong("the file holds no sample", "write one with samples");
@@ -65,7 +54,8 @@ fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     Ok(items.collect())
 }
 
-fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+/// Returns the media of a scene of pbrt.
+pub fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return wrong("the file is no text", "give a scene file of pbrt that is not packed");
     };
@@ -80,19 +70,22 @@ fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
                 doubt(&mut item, &spread);
                 place(&mut item, grid.corners);
             }
-            Err(Fault { message, help }) => item.notes.push(format!("not read: {message}; {help}")),
+            Err(Unreadable { message, help }) => {
+                item.notes.push(format!("not read: {message}; {help}"));
+            }
         }
         item
     });
     Ok(items.collect())
 }
 
-fn of_vdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+/// Returns the grids of an `OpenVDB` file.
+pub fn of_vdb(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     let items = vdb::list(bytes)?.into_iter().map(|listed| {
         let format = "OpenVDB".to_owned();
         let listed = match listed {
             Ok(listed) => listed,
-            Err((name, Fault { message, help })) => {
+            Err((name, Unreadable { message, help })) => {
                 let notes = vec![format!("not read: {message}; {help}")];
                 return Item { format, name, notes, ..Item::default() };
             }
@@ -116,7 +109,8 @@ fn of_vdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
     Ok(items.collect())
 }
 
-fn of_nvdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+/// Returns the grids of a `NanoVDB` file.
+pub fn of_nvdb(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     let items = nvdb::list(bytes)?.into_iter().map(|listed| {
         let mut item = Item {
             format: "NanoVDB".to_owned(),
@@ -139,10 +133,10 @@ fn of_nvdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
 }
 
 /// Adds the facts of a grid of voxels.
-fn tree(item: &mut Item, read: Result<Grid, Fault>) {
+fn tree(item: &mut Item, read: Result<Grid, Unreadable>) {
     let grid = match read {
         Ok(grid) => grid,
-        Err(Fault { message, help }) => {
+        Err(Unreadable { message, help }) => {
             item.notes.push(format!("not read: {message}; {help}"));
             return;
         }
@@ -177,7 +171,9 @@ fn tree(item: &mut Item, read: Result<Grid, Fault>) {
     }
     match grid_vdb::samples(&grid) {
         Ok(samples) => item.notes.extend(Some(samples.remark).filter(|remark| !remark.is_empty())),
-        Err(Fault { message, help }) => item.notes.push(format!("no medium: {message}; {help}")),
+        Err(Unreadable { message, help }) => {
+            item.notes.push(format!("no medium: {message}; {help}"));
+        }
     }
 }
 
@@ -191,7 +187,7 @@ fn world(transform: &Transform, ends: [[i64; 3]; 2]) -> [[f64; 3]; 2] {
 }
 
 /// Returns the array of a file.
-pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     let header = match npy::bytes(&mut bytes).and_then(|header| npy::parse(&header)) {
         Ok(header) => header,
         Err(error) => {

@@ -12,6 +12,7 @@ use crate::judge::images::against::{Terms, compare};
 use crate::judge::images::{Claim, Judgement, Level, Options, Stack, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::JUnitCase;
+use media::formats::Format;
 use numeric::digits::counted;
 
 /// Options on images.
@@ -204,18 +205,15 @@ fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
         std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).with_context(
             || format!("{}: cannot be listed; give a folder that can be read", folder.display()),
         )?;
-    let is_image = |path: &PathBuf| {
-        let ending =
-            path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-        ending.is_some_and(|ending| ["npy", "pfm", "exr"].contains(&&*ending))
-    };
+    let is_image = |path: &PathBuf| Format::of(path).is_some_and(files::is_image);
     let mut found: Vec<PathBuf> =
         entries.into_iter().map(|entry| entry.path()).filter(is_image).collect();
     found.sort();
     if found.is_empty() {
         bail!(
-            "{}: a folder without images (.npy, .pfm, .exr); give one with a pass in each file",
-            folder.display()
+            "{}: a folder without images ({}); give one with a pass in each file",
+            folder.display(),
+            Format::list(files::is_image)
         );
     }
     Ok(found)

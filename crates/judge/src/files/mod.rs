@@ -26,6 +26,7 @@ pub use layout::Layout;
 
 use super::{BUFFER, Block, Source};
 use media::files::number::Number;
+use media::formats;
 use numeric::digits::counted;
 
 /// Format of numbers.
@@ -77,14 +78,13 @@ impl std::fmt::Display for Column {
 impl Format {
     /// Returns the format of a file's ending; `None` for an unknown ending.
     pub fn of_path(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        match ending.as_str() {
-            "csv" | "txt" => Some(Self::Csv { column: None, lookups: None }),
-            "npy" => Some(Self::Npy),
-            "f64" | "bin" | "raw" => Some(Self::Raw),
-            "f32" => Some(Self::RawSingle),
-            _ => None,
-        }
+        Some(match formats::Format::of(path)? {
+            formats::Format::Table => Self::Csv { column: None, lookups: None },
+            formats::Format::Npy => Self::Npy,
+            formats::Format::Doubles => Self::Raw,
+            formats::Format::Singles => Self::RawSingle,
+            _ => return None,
+        })
     }
 }
 
@@ -376,19 +376,6 @@ fn all(mut draws: Draws) -> Result<Vec<f64>, ForeignError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn endings_stand_for_formats() {
-        let of = |path: &str| Format::of_path(Path::new(path));
-        assert_eq!(of("a/draws.CSV"), Some(Format::Csv { column: None, lookups: None }));
-        assert_eq!(of("draws.txt"), Some(Format::Csv { column: None, lookups: None }));
-        assert_eq!(of("draws.v2.npy"), Some(Format::Npy));
-        for path in ["x.f64", "x.bin", "x.raw"] {
-            assert_eq!(of(path), Some(Format::Raw));
-        }
-        assert_eq!(of("draws"), None);
-        assert_eq!(of("draws.npz"), None);
-    }
 
     #[test]
     fn a_column_is_a_place_or_a_name() {

@@ -20,6 +20,7 @@ use media::files::exr::{self, Window};
 use media::files::npy::{self, Header};
 use media::files::number::Number;
 use media::files::{Pixels, pfm};
+use media::formats::Format;
 
 /// Relative rounding error of numbers of 24 bits.
 const SINGLE: f64 = 0.5 * f32::EPSILON as f64;
@@ -43,13 +44,13 @@ pub fn picture(path: &Path) -> Result<Picture, ImageError> {
 /// The file cannot be read, or is not a picture.
 pub fn picture_in(path: &Path, frame: Frame) -> Result<Picture, ImageError> {
     let file = path.display().to_string();
-    match ending(path).as_deref() {
-        Some("npy") => npy_picture(path, &file),
-        Some("pfm") => {
+    match Format::of(path) {
+        Some(Format::Npy) => npy_picture(path, &file),
+        Some(Format::Pfm) => {
             let cure = "write Pf or PF, columns, rows, -1 and all values as float32";
             of_pixels(pfm::read(&bytes(path, &file)?), ["a pfm file", cure], file)
         }
-        Some("exr") => {
+        Some(Format::Exr) => {
             let cure = "give a whole file with one layer of R, G, B or Y as half or float, compressed by ZIP or not at \
                         all, or npy or pfm";
             let bytes = bytes(path, &file)?;
@@ -82,8 +83,8 @@ pub fn stack_in(paths: &[impl AsRef<Path>], frame: Frame) -> Result<Stack, Image
     let [first, others @ ..] = paths else { return Err(ImageError::OnePass) };
     let first = first.as_ref();
     if others.is_empty() {
-        return match ending(first).as_deref() {
-            Some("npy") => npy_stack(first, &first.display().to_string()),
+        return match Format::of(first) {
+            Some(Format::Npy) => npy_stack(first, &first.display().to_string()),
             _ => picture_in(first, frame).and(Err(ImageError::OnePass)),
         };
     }
@@ -104,8 +105,9 @@ pub fn stack_in(paths: &[impl AsRef<Path>], frame: Frame) -> Result<Stack, Image
     Ok(Stack { rounding, ..Stack::new(paths.len(), size, values)? })
 }
 
-fn ending(path: &Path) -> Option<String> {
-    Some(path.extension()?.to_str()?.to_ascii_lowercase())
+/// Returns true if files of a format may be images.
+pub fn is_image(format: Format) -> bool {
+    matches!(format, Format::Npy | Format::Pfm | Format::Exr)
 }
 
 fn of_pixels(
@@ -306,7 +308,7 @@ impl Frame {
 
 /// Returns the data window and the display window of a picture; `None` without windows, or for an unreadable file.
 fn windows(path: &Path) -> Option<[Window; 2]> {
-    if ending(path).as_deref() != Some("exr") {
+    if Format::of(path) != Some(Format::Exr) {
         return None;
     }
     let (mut file, mut bytes) = (File::open(path).ok()?, Vec::new());

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// Cause and cure of a file that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
+pub struct Unreadable {
     /// Cause.
     pub message: String,
     /// Cure.
@@ -31,8 +31,8 @@ pub struct Fault {
 /// # Errors
 ///
 /// Always: the fault itself.
-pub fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Fault> {
-    Err(Fault { message: message.into(), help: help.into() })
+pub fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Unreadable> {
+    Err(Unreadable { message: message.into(), help: help.into() })
 }
 
 /// The grid of a name; without a name, the only grid of a file that is read. `about` returns a grid's name, whether it is
@@ -42,7 +42,7 @@ fn chosen<'a, T>(
     name: Option<&str>,
     about: impl Fn(&T) -> (String, bool, String),
     convert: &str,
-) -> Result<&'a T, Fault> {
+) -> Result<&'a T, Unreadable> {
     let all = || grids.iter().map(|grid| about(grid).2).take(20).collect::<Vec<_>>().join(", ");
     if let Some(name) = name {
         let found = grids.iter().find(|grid| about(grid).0 == name);
@@ -58,7 +58,7 @@ fn chosen<'a, T>(
 }
 
 /// A fault of a damaged file.
-fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
+fn damaged<T>(message: impl Into<String>) -> Result<T, Unreadable> {
     wrong(message, "the file is damaged: write it anew")
 }
 

@@ -13,7 +13,7 @@
 
 use super::bytes::Bytes;
 use super::number::Number;
-use super::{Fault, damaged, wrong};
+use super::{Unreadable, damaged, wrong};
 
 /// Bytes before the samples.
 const HEADER: usize = 48;
@@ -68,7 +68,7 @@ impl<'a> Vol<'a> {
     /// # Errors
     ///
     /// The header is not one of those above, or the length of the file does not fit its samples.
-    pub fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
+    pub fn read(bytes: &'a [u8]) -> Result<Self, Unreadable> {
         if bytes.len() < HEADER {
             return wrong("the file ends within its header of 48 bytes", "write the file anew");
         }

@@ -9,7 +9,7 @@
 //! Source: *`OpenEXR` File Layout*, Academy Software Foundation.
 
 use super::super::bytes::Bytes;
-use super::super::{Fault, damaged};
+use super::super::{Unreadable, damaged};
 
 /// Compressions by their number.
 const COMPRESSIONS: [&str; 12] = [
@@ -90,7 +90,7 @@ pub fn parts(bytes: &[u8]) -> Result<Vec<Part>, String> {
     all(&mut Bytes::new(bytes)).map_err(|fault| fault.message)
 }
 
-fn all(bytes: &mut Bytes) -> Result<Vec<Part>, Fault> {
+fn all(bytes: &mut Bytes) -> Result<Vec<Part>, Unreadable> {
     if bytes.number().ok() != Some(0x0131_2f76) {
         return damaged("it does not begin as OpenEXR files do");
     }
@@ -113,7 +113,7 @@ fn all(bytes: &mut Bytes) -> Result<Vec<Part>, Fault> {
     Ok(parts)
 }
 
-fn window(value: &[u8]) -> Result<Window, Fault> {
+fn window(value: &[u8]) -> Result<Window, Unreadable> {
     let [left, top, right, bottom] = Bytes::new(value).integers()?;
     let window = Window { low: [left, top], high: [right, bottom] };
     if window.size().contains(&0) {
@@ -122,7 +122,7 @@ fn window(value: &[u8]) -> Result<Window, Fault> {
     Ok(window)
 }
 
-fn part(bytes: &mut Bytes, usual: &'static str) -> Result<Part, Fault> {
+fn part(bytes: &mut Bytes, usual: &'static str) -> Result<Part, Unreadable> {
     let (mut name, mut kind, mut code) = (String::new(), usual, None);
     let (mut data, mut display, mut list) = (None, None, None);
     loop {
@@ -160,7 +160,7 @@ fn part(bytes: &mut Bytes, usual: &'static str) -> Result<Part, Fault> {
     Ok(Part { name, kind, compression, is_read: code < FIRST_UNREAD, data, display, channels })
 }
 
-fn channels(value: &[u8]) -> Result<Vec<Channel>, Fault> {
+fn channels(value: &[u8]) -> Result<Vec<Channel>, Unreadable> {
     let (mut bytes, mut channels) = (Bytes::new(value), Vec::new());
     loop {
         let name = String::from_utf8_lossy(bytes.terminated()?).into_owned();

@@ -1,6 +1,6 @@
 //! The grids of a file, segment by segment.
 
-use super::super::{Fault, damaged, shown, wrong};
+use super::super::{Unreadable, damaged, shown, wrong};
 use super::{Bytes, GRID, nodes};
 
 /// The major version, which changes with the layout.
@@ -64,7 +64,7 @@ fn named(list: &str, number: u32) -> String {
 /// # Errors
 ///
 /// The file is not one of the kind that is described above.
-pub fn list(file: &[u8]) -> Result<Vec<Listed>, Fault> {
+pub fn list(file: &[u8]) -> Result<Vec<Listed>, Unreadable> {
     if file.starts_with(b"NanoVDB1") {
         return Ok(vec![raw(file)?]);
     }
@@ -92,7 +92,7 @@ pub fn list(file: &[u8]) -> Result<Vec<Listed>, Fault> {
 }
 
 /// Checks the version of a segment or a grid, and returns its name.
-fn supported(written: u32) -> Result<String, Fault> {
+fn supported(written: u32) -> Result<String, Unreadable> {
     if written >> 21 != MAJOR {
         return wrong(
             format!("it has the version {}", version(written)),
@@ -108,7 +108,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 /// Lists a segment's grids; returns the place of the next segment.
-fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Fault> {
+fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Unreadable> {
     let mut bytes = Bytes::at_byte(file, at);
     if !matches!(bytes.take(8), Ok(b"NanoVDB0" | b"NanoVDB2")) {
         let place = if at == 0 { String::new() } else { format!(" at byte {at}") };
@@ -164,7 +164,7 @@ fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Fa
 }
 
 /// A grid as it is in memory, without a header of the file.
-fn raw(file: &[u8]) -> Result<Listed, Fault> {
+fn raw(file: &[u8]) -> Result<Listed, Unreadable> {
     let at = |place| Bytes::at_byte(file, place);
     let (version, size) = (supported(at(16).number()?)?, at(32).word()?);
     let (name, mut types) = (text(at(40).take(256)?), at(632));

@@ -25,7 +25,7 @@ mod unpacking;
 
 use super::bytes::Bytes;
 use super::vdb::{Grid, Transform};
-use super::{Fault, chosen, damaged, shown, wrong};
+use super::{Unreadable, chosen, damaged, shown, wrong};
 pub use listing::{Listed, list};
 
 /// Bytes before the tree.
@@ -38,7 +38,7 @@ const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read
 /// # Errors
 ///
 /// The file is not one of the kind that is described above, or has no such grid.
-pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
+pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Unreadable> {
     let grids = list(file)?;
     let about = |grid: &Listed| (grid.name.clone(), grid.is_read(), grid.shown());
     let found = chosen(&grids, name, about, CONVERT)?;
@@ -58,7 +58,7 @@ pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
 }
 
 /// The map in double precision, 296 bytes from the beginning of a grid.
-fn transform(grid: &[u8]) -> Result<Transform, Fault> {
+fn transform(grid: &[u8]) -> Result<Transform, Unreadable> {
     let rows: [f64; 9] = Bytes::at_byte(grid, 296 + 88).doubles()?;
     let shift = Bytes::at_byte(grid, 296 + 232).doubles()?;
     let matrix = [0, 1, 2].map(|i| [0, 1, 2].map(|j| rows[3 * i + j]));

@@ -15,7 +15,7 @@
 //! Within a node z is fastest, then y, then x.
 
 use super::super::vdb::{EDGES, Growing, LEAF, Leaf, Tile, Tree, count_on, is_on};
-use super::{Bytes, Fault, GRID, damaged};
+use super::{Bytes, GRID, Unreadable, damaged};
 
 /// Storage of the values of leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +69,7 @@ struct Reader<'a> {
 }
 
 /// Reads the tree of a grid.
-pub(super) fn read(bytes: &[u8], values: Values) -> Result<Tree, Fault> {
+pub(super) fn read(bytes: &[u8], values: Values) -> Result<Tree, Unreadable> {
     let root = from(GRID, Bytes::at_byte(bytes, GRID + 24).word()?.cast_signed())?;
     let mut head = Bytes::at_byte(bytes, root + 24);
     let (tiles, background) = (head.number()?, head.float()?);
@@ -81,7 +81,7 @@ pub(super) fn read(bytes: &[u8], values: Values) -> Result<Tree, Fault> {
 }
 
 /// The position at a distance from another.
-fn from(place: usize, distance: i64) -> Result<usize, Fault> {
+fn from(place: usize, distance: i64) -> Result<usize, Unreadable> {
     let found = i64::try_from(place).ok().and_then(|place| place.checked_add(distance));
     match found.and_then(|found| usize::try_from(found).ok()) {
         Some(found) => Ok(found),
@@ -90,7 +90,7 @@ fn from(place: usize, distance: i64) -> Result<usize, Fault> {
 }
 
 impl Reader<'_> {
-    fn root_tile(&mut self, root: usize, at: usize) -> Result<(), Fault> {
+    fn root_tile(&mut self, root: usize, at: usize) -> Result<(), Unreadable> {
         let mut tile = Bytes::at_byte(self.bytes, at);
         let key = tile.word()?;
         let axis = |shift: u32| -> i32 {
@@ -108,7 +108,7 @@ impl Reader<'_> {
     }
 
     /// A node of a level; its children are nodes of the next.
-    fn node(&mut self, level: usize, at: usize, origin: [i32; 3]) -> Result<(), Fault> {
+    fn node(&mut self, level: usize, at: usize, origin: [i32; 3]) -> Result<(), Unreadable> {
         let Level { log, table, edge } = LEVELS[level];
         let size = 1_usize << (3 * log);
         self.visit(table + 8 * size)?;
@@ -135,7 +135,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn leaf(&mut self, at: usize, origin: [i32; 3]) -> Result<(), Fault> {
+    fn leaf(&mut self, at: usize, origin: [i32; 3]) -> Result<(), Unreadable> {
         let mut bytes = Bytes::at_byte(self.bytes, at);
         let head = bytes.take(LEAF_HEAD)?;
         let log = match self.values {
@@ -162,7 +162,7 @@ impl Reader<'_> {
     }
 
     /// Counts the bytes of a node: in a damaged file a node may be visited without end.
-    fn visit(&mut self, size: usize) -> Result<(), Fault> {
+    fn visit(&mut self, size: usize) -> Result<(), Unreadable> {
         self.visited = self.visited.saturating_add(size);
         if self.visited > self.bytes.len() {
             return damaged("its nodes are more than there are bytes");

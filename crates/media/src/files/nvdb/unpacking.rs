@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::vdb::unpack_blosc;
-use super::{Bytes, Fault, damaged};
+use super::{Bytes, Unreadable, damaged};
 
 /// Bytes of a piece that Blosc packs.
 const PIECE: usize = 1 << 30;
@@ -16,7 +16,7 @@ pub(super) fn unpacked<'a>(
     stored: &'a [u8],
     codec: &str,
     size: u64,
-) -> Result<Cow<'a, [u8]>, Fault> {
+) -> Result<Cow<'a, [u8]>, Unreadable> {
     let size = usize::try_from(size).unwrap_or(usize::MAX);
     let found = match codec {
         "zip" => {
@@ -51,7 +51,7 @@ pub(super) fn unpacked<'a>(
 }
 
 /// Bytes with their length before them.
-fn piece<'a>(bytes: &mut Bytes<'a>) -> Result<&'a [u8], Fault> {
+fn piece<'a>(bytes: &mut Bytes<'a>) -> Result<&'a [u8], Unreadable> {
     let length = usize::try_from(bytes.word()?).unwrap_or(usize::MAX);
     bytes.take(length)
 }

@@ -1,6 +1,6 @@
 //! The media of a scene file that are grids.
 
-use super::super::{Fault, shown, wrong};
+use super::super::{Unreadable, shown, wrong};
 use super::moved::{Moved, mirrored};
 use super::words::{Word, Words};
 
@@ -33,14 +33,14 @@ struct Medium {
 const ADVICE: &str = "give one, as in MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" [ 64 ] …";
 
 /// A medium by its name.
-pub type Named = (String, Result<Grid, Fault>);
+pub type Named = (String, Result<Grid, Unreadable>);
 
 /// The media of a scene file that are grids, or the errors in them.
 ///
 /// # Errors
 ///
 /// The text is no scene file, or has no medium.
-pub fn grids(text: &str) -> Result<Vec<Named>, Fault> {
+pub fn grids(text: &str) -> Result<Vec<Named>, Unreadable> {
     let (media, included) = media(text)?;
     if media.is_empty() {
         return match included {
@@ -59,7 +59,7 @@ pub fn grids(text: &str) -> Result<Vec<Named>, Fault> {
 /// # Errors
 ///
 /// The file has no such medium.
-pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Fault> {
+pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Unreadable> {
     let mut media = grids(text)?;
     let list = |media: &[Named]| {
         media.iter().map(|(name, _)| shown(name)).take(20).collect::<Vec<_>>().join(", ")
@@ -83,7 +83,7 @@ pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Fault> {
     media.pop().map_or_else(|| wrong("it makes no medium", ADVICE), |(_, grid)| grid)
 }
 
-fn media(text: &str) -> Result<(Vec<Medium>, Option<String>), Fault> {
+fn media(text: &str) -> Result<(Vec<Medium>, Option<String>), Unreadable> {
     let mut words = Words::new(text);
     let (mut media, mut included) = (Vec::new(), None);
     let (mut moved, mut outer) = (Moved::default(), Vec::new());
@@ -121,7 +121,7 @@ fn media(text: &str) -> Result<(Vec<Medium>, Option<String>), Fault> {
     Ok((media, included))
 }
 
-fn three(words: &mut Words) -> Result<[f64; 3], Fault> {
+fn three(words: &mut Words) -> Result<[f64; 3], Unreadable> {
     let mut numbers = [0.0; 3];
     for number in &mut numbers {
         match words.next()? {
@@ -140,7 +140,7 @@ fn three(words: &mut Words) -> Result<[f64; 3], Fault> {
 }
 
 /// A matrix that points are multiplied with from the left, column after column as pbrt writes it.
-fn matrix(words: &mut Words, moved: &mut Moved) -> Result<(), Fault> {
+fn matrix(words: &mut Words, moved: &mut Moved) -> Result<(), Unreadable> {
     let numbers = words.numbers()?;
     let Ok(matrix) = <[f64; 16]>::try_from(numbers) else {
         return words.wrong("a matrix has not 16 numbers", "give 16, the translation last but one");
@@ -158,7 +158,7 @@ fn matrix(words: &mut Words, moved: &mut Moved) -> Result<(), Fault> {
 }
 
 /// The parameters after `MakeNamedMedium`.
-fn medium(words: &mut Words, moved: Moved) -> Result<Medium, Fault> {
+fn medium(words: &mut Words, moved: Moved) -> Result<Medium, Unreadable> {
     let line = words.line;
     let Some(Word::Text(name)) = words.next()? else {
         return words.wrong("a medium has no name", ADVICE);
@@ -191,7 +191,7 @@ fn medium(words: &mut Words, moved: Moved) -> Result<Medium, Fault> {
 }
 
 impl Medium {
-    fn grid(self) -> Result<Grid, Fault> {
+    fn grid(self) -> Result<Grid, Unreadable> {
         let refuse = |what: &str, help: &str| {
             wrong(format!("medium {} in line {} {what}", shown(&self.name), self.line), help)
         };

@@ -1,6 +1,6 @@
 //! The words of a scene file.
 
-use super::super::{Fault, shown, wrong};
+use super::super::{Unreadable, shown, wrong};
 
 /// A word with its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ impl<'a> Words<'a> {
     }
 
     /// Returns the next word without consuming it; `None` at the end.
-    pub(super) fn peek(&mut self) -> Result<Option<Word<'a>>, Fault> {
+    pub(super) fn peek(&mut self) -> Result<Option<Word<'a>>, Unreadable> {
         if self.peeked.is_none() {
             self.peeked = self.read()?;
         }
@@ -37,7 +37,7 @@ impl<'a> Words<'a> {
     }
 
     /// Returns the next word; `None` at the end.
-    pub(super) fn next(&mut self) -> Result<Option<Word<'a>>, Fault> {
+    pub(super) fn next(&mut self) -> Result<Option<Word<'a>>, Unreadable> {
         match self.peeked.take() {
             Some(word) => Ok(Some(word)),
             None => self.read(),
@@ -45,7 +45,7 @@ impl<'a> Words<'a> {
     }
 
     /// A fault in the line of the last word.
-    pub(super) fn wrong<T>(&self, message: &str, help: &str) -> Result<T, Fault> {
+    pub(super) fn wrong<T>(&self, message: &str, help: &str) -> Result<T, Unreadable> {
         wrong(format!("line {}: {message}", self.line), help)
     }
 
@@ -57,7 +57,7 @@ impl<'a> Words<'a> {
         taken
     }
 
-    fn read(&mut self) -> Result<Option<Word<'a>>, Fault> {
+    fn read(&mut self) -> Result<Option<Word<'a>>, Unreadable> {
         loop {
             let blank = self.rest.len() - self.rest.trim_start().len();
             self.take(blank);
@@ -94,8 +94,8 @@ impl<'a> Words<'a> {
     /// The value of a parameter: a word, or those in brackets.
     pub(super) fn values(
         &mut self,
-        mut take: impl FnMut(&Self, Word<'a>) -> Result<(), Fault>,
-    ) -> Result<(), Fault> {
+        mut take: impl FnMut(&Self, Word<'a>) -> Result<(), Unreadable>,
+    ) -> Result<(), Unreadable> {
         match self.next()? {
             Some(Word::Open) => loop {
                 match self.next()? {
@@ -110,7 +110,7 @@ impl<'a> Words<'a> {
     }
 
     /// The numbers of a parameter.
-    pub(super) fn numbers(&mut self) -> Result<Vec<f64>, Fault> {
+    pub(super) fn numbers(&mut self) -> Result<Vec<f64>, Unreadable> {
         let mut numbers = Vec::new();
         self.values(|words, word| {
             let number = match word {

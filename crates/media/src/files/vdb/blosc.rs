@@ -10,14 +10,14 @@
 //! Source: *Blosc Chunk Format*, `README_CHUNK_FORMAT.rst` of c-blosc 1.21; LZ4 by the crate `lz4_flex`.
 
 use super::super::bytes::Bytes;
-use super::{Fault, damaged, wrong};
+use super::{Unreadable, damaged, wrong};
 
 /// Minimum number of bytes of a stream into which a block is split, and maximum number of streams.
 const LEAST_STREAM: usize = 128;
 const MAX_STREAMS: usize = 16;
 
 /// Unpacks a frame into exactly the length of `into`.
-pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Fault> {
+pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Unreadable> {
     let mut head = Bytes::new(frame);
     let [version, _, flags, width] = head.number()?.to_le_bytes();
     let [size, block, whole] = [head.number()?, head.number()?, head.number()?].map(|n| n as usize);
@@ -59,7 +59,7 @@ pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Faul
     Ok(())
 }
 
-fn unpack_streams(source: &mut Bytes, streams: usize, into: &mut [u8]) -> Result<(), Fault> {
+fn unpack_streams(source: &mut Bytes, streams: usize, into: &mut [u8]) -> Result<(), Unreadable> {
     if !into.len().is_multiple_of(streams) {
         return damaged("a block of Blosc cannot be split");
     }

@@ -2,7 +2,7 @@
 
 use super::super::bytes::Bytes;
 use super::transform::Transform;
-use super::{Fault, damaged, shown, wrong};
+use super::{Unreadable, damaged, shown, wrong};
 
 /// Versions with this layout.
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=224;
@@ -23,7 +23,7 @@ pub(super) struct Entry {
 }
 
 impl Entry {
-    pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
+    pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Unreadable> {
         let [key, kind, parent] = [bytes.text()?, bytes.text()?, bytes.text()?];
         let [begin, blocks, end] = bytes.words()?;
         if end > bytes.len() as u64 {
@@ -70,7 +70,7 @@ impl Entry {
 }
 
 /// The header, and the entry before each grid.
-pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Fault> {
+pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Unreadable> {
     if !matches!(bytes.take(8), Ok(b" BDV\0\0\0\0")) {
         return wrong("it does not begin as OpenVDB's files do", "write it by OpenVDB");
     }
@@ -110,8 +110,8 @@ pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Fault> {
 /// Reads names, types and values.
 fn metadata(
     bytes: &mut Bytes,
-    mut tell: impl FnMut(&str, &str, &[u8]) -> Result<(), Fault>,
-) -> Result<(), Fault> {
+    mut tell: impl FnMut(&str, &str, &[u8]) -> Result<(), Unreadable>,
+) -> Result<(), Unreadable> {
     for _ in 0..bytes.number()? {
         let [name, kind] = [bytes.text()?, bytes.text()?];
         let length = bytes.number()? as usize;
@@ -130,7 +130,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    pub(super) fn read(bytes: &mut Bytes, entry: &Entry) -> Result<Self, Fault> {
+    pub(super) fn read(bytes: &mut Bytes, entry: &Entry) -> Result<Self, Unreadable> {
         bytes.seek(entry.places[0]);
         let compression = bytes.number()?;
         let (mut class, mut voxels) = (String::new(), None);

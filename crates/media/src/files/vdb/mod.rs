@@ -32,7 +32,7 @@ pub use transform::Transform;
 pub(in crate::files) use tree::{EDGES, Growing};
 pub use tree::{LEAF, Leaf, Tile, Tree};
 
-pub use super::Fault;
+pub use super::Unreadable;
 use super::bytes::Bytes;
 use super::{chosen, damaged, shown, wrong};
 
@@ -67,14 +67,14 @@ pub struct Listed {
 }
 
 /// An entry, or the name of a grid and the fault of its beginning.
-pub type Entered = Result<Listed, (String, Fault)>;
+pub type Entered = Result<Listed, (String, Unreadable)>;
 
 /// Lists the grids of a file.
 ///
 /// # Errors
 ///
 /// The file is not one of the kind that is described above.
-pub fn list(file: &[u8]) -> Result<Vec<Entered>, Fault> {
+pub fn list(file: &[u8]) -> Result<Vec<Entered>, Unreadable> {
     let mut bytes = Bytes::new(file);
     let entries = header::entries(&mut bytes)?;
     let mut listed = Vec::new();
@@ -97,7 +97,7 @@ pub fn list(file: &[u8]) -> Result<Vec<Entered>, Fault> {
 /// # Errors
 ///
 /// The file is not one of the kind that is described above, or has no such grid.
-pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
+pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Unreadable> {
     let mut bytes = Bytes::new(file);
     let entries = header::entries(&mut bytes)?;
     let about = |entry: &Entry| (entry.name(), entry.has_floats(), entry.shown());
@@ -112,7 +112,7 @@ pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
 
 const CONVERT: &str = "a grid of the type Tree_float_5_4_3 is read: OpenVDB's FloatGrid";
 
-fn grid(bytes: &mut Bytes, entry: &Entry, entries: &[Entry]) -> Result<Grid, Fault> {
+fn grid(bytes: &mut Bytes, entry: &Entry, entries: &[Entry]) -> Result<Grid, Unreadable> {
     let own = Head::read(bytes, entry)?;
     // A grid that shares its tree has only a transform.
     let (head, owner) = if entry.parent.is_empty() {

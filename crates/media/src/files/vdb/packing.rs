@@ -13,7 +13,7 @@
 use exr::prelude::f16;
 
 use super::super::bytes::Bytes;
-use super::{Fault, blosc, damaged, wrong};
+use super::{Unreadable, blosc, damaged, wrong};
 
 const ZIP: u32 = 1;
 const ACTIVE_MASK: u32 = 2;
@@ -38,7 +38,7 @@ pub(in crate::files) fn count_on(mask: &[u8]) -> usize {
 }
 
 impl Packing {
-    pub(super) fn new(compression: u32, has_halves: bool) -> Result<Self, Fault> {
+    pub(super) fn new(compression: u32, has_halves: bool) -> Result<Self, Unreadable> {
         if compression > (ZIP | ACTIVE_MASK | BLOSC) {
             let message = format!("its grid is packed by an unknown scheme ({compression})");
             return wrong(message, "write it anew by OpenVDB, with zip, Blosc or no compression");
@@ -52,7 +52,7 @@ impl Packing {
         bytes: &mut Bytes,
         active: &[u8],
         background: f32,
-    ) -> Result<Vec<f32>, Fault> {
+    ) -> Result<Vec<f32>, Unreadable> {
         let (all, said) = (8 * active.len(), bytes.byte()?);
         if said > 6 {
             return damaged(format!("what it says of inactive values is {said}, not 0 to 6"));
@@ -79,7 +79,7 @@ impl Packing {
     }
 
     /// Reads `count` unpacked numbers.
-    fn numbers(self, bytes: &mut Bytes<'_>, count: usize) -> Result<Vec<f32>, Fault> {
+    fn numbers(self, bytes: &mut Bytes<'_>, count: usize) -> Result<Vec<f32>, Unreadable> {
         let size = self.width * count;
         let mut room = Vec::new();
         // For zero halves even the length is missing.
@@ -102,7 +102,7 @@ impl Packing {
         bytes: &mut Bytes<'a>,
         size: usize,
         room: &'r mut Vec<u8>,
-    ) -> Result<&'r [u8], Fault> {
+    ) -> Result<&'r [u8], Unreadable> {
         let length = bytes.word()?.cast_signed();
         if length <= 0 {
             if length.unsigned_abs() != size as u64 {

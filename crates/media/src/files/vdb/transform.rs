@@ -7,7 +7,7 @@
 //! Frusta, in which straight rays are bent, are not supported.
 
 use super::super::bytes::Bytes;
-use super::{Fault, damaged, shown, wrong};
+use super::{Unreadable, damaged, shown, wrong};
 use numeric::geometry::Point;
 
 /// Minimum relative volume of a voxel: flatter lattices are degenerate in double precision.
@@ -52,7 +52,7 @@ impl Transform {
         [0, 1, 2].map(|j| Point([0, 1, 2].map(|i| self.matrix[i][j])))
     }
 
-    pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
+    pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Unreadable> {
         let kind = bytes.text()?;
         let read = match kind.as_str() {
             "TranslationMap" => Self::along_axes([1.0; 3], bytes.doubles()?),
@@ -72,7 +72,7 @@ impl Transform {
     }
 
     /// Checks that the transform is finite and does not flatten voxels.
-    pub(in crate::files) fn checked(self) -> Result<Self, Fault> {
+    pub(in crate::files) fn checked(self) -> Result<Self, Unreadable> {
         let mut numbers = self.matrix.iter().flatten().chain(&self.shift);
         let [a, b, c] = self.columns().map(|edge| Point(edge.0.map(|x| x / edge.norm())));
         let volume = a.dot(b.cross(c));
@@ -88,7 +88,7 @@ impl Transform {
     }
 
     /// The transform of a matrix that points are multiplied with from the left: its last row is the translation.
-    fn of_matrix(matrix: [f64; 16]) -> Result<Self, Fault> {
+    fn of_matrix(matrix: [f64; 16]) -> Result<Self, Unreadable> {
         let at = |row: usize, column: usize| matrix[4 * row + column];
         if (0..3).any(|row| at(row, 3) != 0.0) || at(3, 3) != 1.0 {
             return damaged("its transform is not affine");
@@ -99,7 +99,7 @@ impl Transform {
 }
 
 /// A scale, and the derived data in the file: the size of a voxel, and three kinds of inverses.
-fn scale(bytes: &mut Bytes) -> Result<[f64; 3], Fault> {
+fn scale(bytes: &mut Bytes) -> Result<[f64; 3], Unreadable> {
     let scale: [f64; 3] = bytes.doubles()?;
     let size: [f64; 3] = bytes.doubles()?;
     bytes.doubles::<9>()?;

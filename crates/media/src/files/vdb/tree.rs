@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 use super::super::bytes::Bytes;
 use super::packing::{Packing, count_on, is_on};
-use super::{Fault, damaged, wrong};
+use super::{Unreadable, damaged, wrong};
 
 /// Number of voxels of a leaf along each axis.
 pub const LEAF: i32 = 8;
@@ -68,7 +68,7 @@ impl Tree {
         bytes: &mut Bytes,
         packing: Packing,
         [_, blocks, end]: [usize; 3],
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, Unreadable> {
         let buffers = bytes.number()?;
         if buffers != 1 {
             return damaged(format!("its tree has {buffers} buffers instead of one"));
@@ -104,7 +104,7 @@ impl Growing {
 
     /// Adds a tile. Tiles do not overlap. Many of them with more voxels than a medium may have are refused, because
     /// a small file can contain very many. A few are kept, so that the error of the medium can state its size.
-    pub(in crate::files) fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Fault> {
+    pub(in crate::files) fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Unreadable> {
         let voxels = u64::from(tile.edge.unsigned_abs()).pow(3);
         if is_active {
             self.tree.active = self.tree.active.saturating_add(voxels);
@@ -133,7 +133,7 @@ struct Reader<'a, 'b> {
 }
 
 impl Reader<'_, '_> {
-    fn root(&mut self) -> Result<(), Fault> {
+    fn root(&mut self) -> Result<(), Unreadable> {
         let (tiles, children) = (self.bytes.number()?, self.bytes.number()?);
         let mut origins = BTreeSet::new();
         let mut new = |origin: [i32; 3]| {
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
     }
 
     /// A node of `2^LOG` tiles or children along each axis, with the edge of the level.
-    fn node<const LOG: usize>(&mut self, level: usize, origin: [i32; 3]) -> Result<(), Fault> {
+    fn node<const LOG: usize>(&mut self, level: usize, origin: [i32; 3]) -> Result<(), Unreadable> {
         let size = 1 << (3 * LOG);
         let children = self.bytes.take(size / 8)?;
         let active = self.bytes.take(size / 8)?;
@@ -185,7 +185,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn blocks(&mut self) -> Result<(), Fault> {
+    fn blocks(&mut self) -> Result<(), Unreadable> {
         let Tree { background, ref mut leaves, .. } = self.tree.tree;
         for (leaf, known) in leaves.iter_mut().zip(&self.masks) {
             let mask = self.bytes.take(known.len())?;
