@@ -12,7 +12,6 @@ use crate::record::{
 use ::theory::parallel;
 use fearless_simd::Level;
 use gate::CheckId;
-use gate::session::Reason;
 use gate::stats::gate::TYPICAL;
 use gate::stats::multiplicity;
 use gate::stats::verdict::MISS;
@@ -88,6 +87,7 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let mut record = record(plan, cases);
     record.results.cut_by_time = draws.cut_by_time;
     record.results.cut_by_budget = draws.cut_by_budget;
+    record.results.gate.variance_assumed = judged.iter().map(Judged::assumed).sum();
     complete(&mut record.results);
     record.timing.seconds = seconds;
     record
@@ -158,7 +158,8 @@ fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
 }
 
 /// Returns the record of an experiment with its draws and the findings of its checks.
-fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord {
+fn experiment(plan: &Plan, judged: &Judged) -> ExperimentRecord {
+    let (of, findings) = (judged.of, judged.findings());
     let (case, planned, drawn) = (of.case, of.planned, &of.drawn);
     let mut record = theory::predicted(case, planned);
     let seconds = planned.outcome.is_ok().then_some(drawn.seconds);
@@ -171,8 +172,7 @@ fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord
     record.drawn = Some(drawn.draws);
     record.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);
     theory::measure(&mut record, of);
-    record.findings.clone_from(findings);
-    evaluate::explain_blocks(&mut record.findings);
+    record.findings = findings;
     for finding in &mut record.findings {
         let channel = record.channels.iter().find(|channel| finding.is_about(&channel.channel));
         finding.z = match finding.check {
@@ -190,7 +190,7 @@ fn experiment(plan: &Plan, Judged { of, findings }: &Judged) -> ExperimentRecord
         let (verdict, reason) = worst(&found);
         (values.verdict, values.reason) = (Some(verdict), reason);
         if verdict == Verdict::Inconclusive {
-            values.decide = deciding(plan, case, planned, findings);
+            values.decide = deciding(plan, case, planned, &record.findings);
         }
     }
     record
@@ -222,8 +222,6 @@ fn complete(results: &mut Results) {
     let passed = |finding: &&Finding| {
         finding.check == CheckId::Mean && finding.verdict == Verdict::Pass && !finding.expects_bias
     };
-    let assumed = Reason::VarianceAssumed.to_string();
-    gate.variance_assumed = means().filter(passed).filter(|f| f.reason == assumed).count();
     let biases = means().filter(passed).filter_map(|finding| Some(finding.gate?.tolerance));
     gate.worst_bias = biases.reduce(f64::max);
 }

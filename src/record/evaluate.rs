@@ -1,4 +1,4 @@
-//! Turns totals into findings, one per question.
+//! Turns totals into answers, one per question. Their reasons become words in the record alone.
 //!
 //! ```text
 //! gate   failed ⇒ fail, passed ⇒ pass, open ⇒ underpowered if that was known, else inconclusive
@@ -23,22 +23,60 @@ use gate::stats::multiplicity;
 use gate::stats::verdict::BLOCK;
 use theory::parallel;
 
-/// Experiment with its draws and the findings of its checks.
+/// Experiment with its draws and the answers of its checks.
 pub struct Judged<'d> {
     /// The experiment with its draws.
     pub of: &'d DrawnExperiment<'d>,
-    /// The findings, in the order of the questions.
-    pub findings: Vec<Finding>,
+    /// The answers, in the order of the questions.
+    answers: Vec<Answer>,
+}
+
+/// Answer of a check to a question: a finding, and its reason before it is put into words.
+struct Answer {
+    finding: Finding,
+    reason: Option<Reason>,
+}
+
+impl Judged<'_> {
+    /// Returns the findings, with their reasons in words.
+    pub fn findings(&self) -> Vec<Finding> {
+        let worded = |Answer { finding, reason }: &Answer| Finding {
+            reason: reason.as_ref().map_or_else(String::new, Reason::to_string),
+            ..finding.clone()
+        };
+        self.answers.iter().map(worded).collect()
+    }
+
+    /// Returns the number of means that pass with a variance that is assumed.
+    pub fn assumed(&self) -> usize {
+        let is_one = |answer: &&Answer| {
+            answer.is_passing_mean()
+                && !answer.finding.expects_bias
+                && answer.reason == Some(Reason::VarianceAssumed)
+        };
+        self.answers.iter().filter(is_one).count()
+    }
+}
+
+impl Answer {
+    fn is(&self, check: CheckId) -> bool {
+        self.finding.check == check
+    }
+
+    fn is_passing_mean(&self) -> bool {
+        self.is(CheckId::Mean) && self.finding.verdict == Verdict::Pass
+    }
 }
 
 /// Judges the draws of a plan, experiment by experiment.
 pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
     let mut judged =
-        parallel::map(&draws.experiments, |of| Judged { of, findings: findings(plan, of) });
-    judge_distributions(
-        plan,
-        &mut judged.iter_mut().flat_map(|one| &mut one.findings).collect::<Vec<_>>(),
-    );
+        parallel::map(&draws.experiments, |of| Judged { of, answers: answers(plan, of) });
+    let mut all: Vec<&mut Answer> = judged.iter_mut().flat_map(|one| &mut one.answers).collect();
+    judge_distributions(plan, &mut all);
+    for one in &mut judged {
+        explain_blocks(&mut one.answers);
+    }
     judged
 }
 
@@ -59,31 +97,31 @@ fn blank(check: CheckId, what: &str, channel: String) -> Finding {
     }
 }
 
-/// Returns the findings of an experiment; p-values of distributions are still to be judged together.
-fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
+/// Returns the answers about an experiment; p-values of distributions are still to be judged together.
+fn answers(plan: &Plan, of: &DrawnExperiment) -> Vec<Answer> {
     let DrawnExperiment { planned, drawn, .. } = of;
     if drawn.draws == 0 {
-        let reason = "the limit of time or draws came before the first draw".to_owned();
-        return vec![Finding { reason, ..blank(CheckId::Mean, "the mean", String::new()) }];
+        let finding = blank(CheckId::Mean, "the mean", String::new());
+        return vec![Answer { finding, reason: Some(Reason::NothingDrawn) }];
     }
     let Ok(ready) = &planned.outcome else { return Vec::new() };
     let both = planned.questions.iter().zip(&drawn.totals);
-    let found = both.map(|(question, total)| finding(plan, of, ready, question, total));
-    let mut findings: Vec<Finding> = found.collect();
-    qualify_means(plan, planned, &mut findings);
+    let found = both.map(|(question, total)| answer(plan, of, ready, question, total));
+    let mut answers: Vec<Answer> = found.collect();
+    qualify_means(plan, planned, &mut answers);
     if planned.expect_biased {
-        show_anywhere(&mut findings);
+        show_anywhere(&mut answers);
     }
-    findings
+    answers
 }
 
-fn finding(
+fn answer(
     plan: &Plan,
     of: &DrawnExperiment,
     ready: &Ready,
     question: &Question,
     total: &Total,
-) -> Finding {
+) -> Answer {
     let DrawnExperiment { planned, drawn, .. } = of;
     let channel = question.channel.map(|index| &ready.prediction.channels[index]);
     let levels = plan.levels.of(question.expects_bias);
@@ -112,31 +150,30 @@ fn finding(
         },
     );
     let channel = channel.map_or(String::new(), |channel| channel.name.clone());
-    Finding {
+    let finding = Finding {
         expects_bias: question.expects_bias,
         p: found.p,
         gate: found.gate,
         path: thinned(&found.path),
         block: found.block,
         verdict: found.verdict,
-        reason: found.reason.map_or(String::new(), |reason| reason.to_string()),
         ..blank(question.check, &question.what, channel)
-    }
+    };
+    Answer { finding, reason: found.reason }
 }
 
 /// Judges the p-values of a run together.
-fn judge_distributions(plan: &Plan, findings: &mut [&mut Finding]) {
-    let p: Vec<f64> = findings.iter().filter_map(|finding| finding.p).collect();
+fn judge_distributions(plan: &Plan, answers: &mut [&mut Answer]) {
+    let p: Vec<f64> = answers.iter().filter_map(|answer| answer.finding.p).collect();
     let rejected =
         multiplicity::holm(&p, plan.levels.distributions, plan.levels.distribution_alpha);
-    let tested = findings.iter_mut().filter(|finding| finding.p.is_some());
-    for (finding, rejected) in tested.zip(rejected) {
+    let tested = answers.iter_mut().filter_map(|answer| Some((answer.finding.p?, answer)));
+    for ((p, answer), rejected) in tested.zip(rejected) {
         // A p-value of NaN comes from draws that are not finite.
-        if rejected || finding.p.is_some_and(f64::is_nan) {
-            finding.verdict = Verdict::Fail;
-            let (what, p) = (finding.what.clone().into(), finding.p.unwrap_or(0.0));
-            let differs = Reason::Differs { what, p: format!("{p:.1e}"), details: String::new() };
-            finding.reason = differs.to_string();
+        if rejected || p.is_nan() {
+            answer.finding.verdict = Verdict::Fail;
+            let (what, p) = (answer.finding.what.clone().into(), format!("{p:.1e}"));
+            answer.reason = Some(Reason::Differs { what, p, details: String::new() });
         }
     }
 }
@@ -146,14 +183,16 @@ fn judge_distributions(plan: &Plan, findings: &mut [&mut Finding]) {
 /// A mean passes if its variance does, could not be tested, or is that of pilot draws. If the variance is refuted as
 /// too small, a mean that is off only in units of that variance does not fail: with the spread of the draws it would
 /// not.
-fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
-    let variances =
-        findings.iter().filter(|f| f.check == CheckId::Variance && f.verdict != Verdict::Pass);
-    let variances: Vec<Finding> = variances.cloned().collect();
+fn qualify_means(plan: &Plan, planned: &Planned, answers: &mut [Answer]) {
+    let variances = answers.iter().filter(|answer| answer.is(CheckId::Variance));
+    let variances = variances.map(|answer| &answer.finding);
+    let variances: Vec<Finding> =
+        variances.filter(|variance| variance.verdict != Verdict::Pass).cloned().collect();
     let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
     let is_piloted =
         |name: &str| channels.iter().any(|c| c.pilot_variance_allowed && c.name == name);
-    for mean in findings.iter_mut().filter(|finding| finding.check == CheckId::Mean) {
+    for answer in answers.iter_mut().filter(|answer| answer.is(CheckId::Mean)) {
+        let mean = &mut answer.finding;
         let variance = variances.iter().find(|variance| variance.channel == mean.channel);
         let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {
             (Verdict::Pass, Some(variance)) if variance.verdict != Verdict::Underpowered => {
@@ -169,27 +208,28 @@ fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
             _ => continue,
         };
         mean.verdict = verdict;
-        mean.reason = reason.to_string();
+        answer.reason = Some(reason);
     }
 }
 
 /// Adds the cause to blocks and streams that differ from theory if the mean or the variance fails: the difference is
 /// then no evidence of a dependence.
-pub fn explain_blocks(findings: &mut [Finding]) {
+fn explain_blocks(answers: &mut [Answer]) {
     let fails = |check: CheckId| {
-        findings.iter().any(|found| found.check == check && found.verdict == Verdict::Fail)
+        answers.iter().any(|answer| answer.is(check) && answer.finding.verdict == Verdict::Fail)
     };
-    let cause = match [fails(CheckId::Mean), fails(CheckId::Variance)] {
-        [true, _] => "the mean is off",
-        [_, true] => "the variance is off",
+    let from = match [fails(CheckId::Mean), fails(CheckId::Variance)] {
+        [true, _] => "the mean",
+        [_, true] => "the variance",
         _ => return,
     };
-    let blocks = findings.iter_mut().filter(|found| {
-        matches!(found.check, CheckId::Dispersion | CheckId::Streams)
-            && found.verdict == Verdict::Fail
-    });
-    for found in blocks {
-        found.reason = format!("{}, which follows where {cause}", found.reason);
+    let is_of_blocks = |answer: &&mut Answer| {
+        let is_either = answer.is(CheckId::Dispersion) || answer.is(CheckId::Streams);
+        is_either && answer.finding.verdict == Verdict::Fail
+    };
+    for answer in answers.iter_mut().filter(is_of_blocks) {
+        let of = answer.reason.take().map(Box::new);
+        answer.reason = of.map(|of| Reason::Follows { of, from: from.into() });
     }
 }
 
@@ -200,15 +240,14 @@ fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
 }
 
 /// Counts a declared bias as shown if one point of a curve shows it.
-fn show_anywhere(findings: &mut [Finding]) {
-    let shown =
-        |finding: &Finding| finding.check == CheckId::Mean && finding.verdict == Verdict::Pass;
-    if findings.iter().any(shown) {
-        for finding in findings.iter_mut().filter(|finding| finding.check == CheckId::Mean) {
-            if finding.verdict != Verdict::Pass {
-                finding.verdict = Verdict::Pass;
-                finding.reason = Reason::BiasedElsewhere.to_string();
-            }
+fn show_anywhere(answers: &mut [Answer]) {
+    if !answers.iter().any(Answer::is_passing_mean) {
+        return;
+    }
+    for answer in answers.iter_mut().filter(|answer| answer.is(CheckId::Mean)) {
+        if answer.finding.verdict != Verdict::Pass {
+            answer.finding.verdict = Verdict::Pass;
+            answer.reason = Some(Reason::BiasedElsewhere);
         }
     }
 }

@@ -144,7 +144,7 @@ fn answers_that_are_off_by_the_tolerance_pass_once_in_a_hundred() {
             }
         }
         let drawn = run::draw(&plan, &|_| {});
-        for finding in evaluate::run(&plan, &drawn).into_iter().flat_map(|one| one.findings) {
+        for finding in evaluate::run(&plan, &drawn).into_iter().flat_map(|one| one.findings()) {
             // A check that could not pass anyway promises nothing.
             if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
                 asked += 1;

@@ -104,10 +104,19 @@ pub enum Reason {
         /// ln E at which it is shown.
         limit: f64,
     },
+    /// The limit of time or draws came before the first draw.
+    NothingDrawn,
     /// A bias was declared, but every draw is right.
     NoBias,
     /// The declared bias is shown in another channel.
     BiasedElsewhere,
+    /// Blocks or streams differ because the mean or the variance is off: no evidence of a dependence.
+    Follows {
+        /// What differs.
+        of: Box<Self>,
+        /// What is off.
+        from: What,
+    },
     /// Draws are NaN or infinite.
     NotFinite,
     /// The mean and single draws deviate by more than rounding explains.
@@ -248,8 +257,12 @@ impl fmt::Display for Reason {
                 let bias = fine_percent(*bias);
                 write!(f, "expected a bias, found {bias} (ln E = {ln_e:.1} of {limit:.1})")
             }
+            Self::NothingDrawn => {
+                f.write_str("the limit of time or draws came before the first draw")
+            }
             Self::NoBias => f.write_str("expected a bias, found none"),
             Self::BiasedElsewhere => f.write_str("biased elsewhere"),
+            Self::Follows { of, from } => write!(f, "{of}, which follows where {from} is off"),
             Self::NotFinite => f.write_str("draws are not finite numbers"),
             Self::MeanOff { what, off, largest, bound } => {
                 let (largest, bound) = (percent(*largest), percent(*bound));
