@@ -34,6 +34,7 @@
 pub(crate) mod build;
 pub mod catalogue;
 mod channels;
+mod course;
 pub(crate) mod estimator;
 pub(crate) mod forms;
 pub mod id;
@@ -46,7 +47,8 @@ pub mod sweep;
 
 pub use build::Ready;
 pub use catalogue::Catalogue;
-pub use scenario::{Course, Scenario, ScenarioAtPoint};
+pub use course::Course;
+pub use scenario::{Scenario, ScenarioAtPoint};
 pub use spec::{CaseError, Source, Spec};
 
 /// The manual of case files.
