@@ -11,8 +11,6 @@ use crate::case::{Case, CaseError, Source, Spec, forms};
 use media::Body;
 use media::catalogue::{Entry, Node, Page, Value};
 use numeric::digits::number;
-use theory::collisions::Rule;
-use theory::collisions::rules::{Single, Weight};
 
 /// Numbers of segments of local majorants along a ray.
 const SEGMENTS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
@@ -28,27 +26,55 @@ const PILOTS: [u32; 2] = [2, 8];
 const ALBEDOS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 /// Recipe of σ̂ by which a case takes a profile.
 pub const RECIPE: &str = "sampling.piecewise-constant";
-/// Estimators with a weight at every collision.
-const WEIGHING: [&str; 3] = ["ratio", "double", "residual-ratio"];
 /// Settings of a problem that advice replaces.
 const REPLACED: [&str; 4] = ["estimators", "sampling", "sweep", "rays"];
 
-/// Rule at a collision, for the optimal profile of σ̂.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Collisions {
-    /// A weight at every collision: ratio tracking and the double particle.
-    Weight,
-    /// The single particle.
-    Single(Single),
+/// An estimator with settings that are tried; its σ̂ is free, unless they give it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Candidate {
+    /// Name in the catalogue.
+    pub name: String,
+    /// Settings in the form of a case; often empty.
+    settings: String,
+    /// True if σ̂ is given in steps along the ray.
+    pub is_profile: bool,
 }
 
-impl Collisions {
-    /// Returns the rule.
-    pub fn rule(&self) -> &dyn Rule {
-        match self {
-            Self::Weight => &Weight,
-            Self::Single(rule) => rule,
+impl Candidate {
+    fn new(name: &str, settings: impl Into<String>) -> Self {
+        Self { name: name.to_owned(), settings: settings.into(), is_profile: false }
+    }
+
+    /// Returns the candidate with σ̂ in steps along the ray.
+    #[must_use]
+    pub fn with_profile(&self, breaks: &[f64], values: &[f64]) -> Self {
+        let list =
+            |numbers: &[f64]| numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", ");
+        let (breaks, values) = (list(breaks), list(values));
+        let sampling = format!("{RECIPE} = {{ breaks = [{breaks}], values = [{values}] }}");
+        let comma = if self.settings.is_empty() { "" } else { ", " };
+        let settings = format!("{}{comma}{sampling}", self.settings);
+        Self { name: self.name.clone(), settings, is_profile: true }
+    }
+
+    /// Returns the entry of a list of estimators, as in `single = { rule = "clamped" }`.
+    pub fn line(&self) -> String {
+        match self.settings.as_str() {
+            "" => format!("{} = {{}}", self.name),
+            settings => format!("{} = {{ {settings} }}", self.name),
         }
+    }
+
+    /// Returns what candidates that differ in numbers alone have in common.
+    pub fn family(&self) -> String {
+        let is_kept = |c: &char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | ' '));
+        let words = self.line().replace("].", "]");
+        words.chars().filter(is_kept).collect()
+    }
+
+    /// Returns the name of its price: numbers of a profile depend on prices.
+    pub fn price_key(&self) -> String {
+        if self.is_profile { self.family() } else { self.line() }
     }
 }
 
@@ -58,23 +84,23 @@ impl Collisions {
 /// # Errors
 ///
 /// Mistakes in the case.
-pub fn listed(base: &Case, rays: &[Body]) -> Result<Vec<String>, CaseError> {
+pub fn listed(base: &Case, rays: &[Body]) -> Result<Vec<Candidate>, CaseError> {
     let (problem, settings) = base.spec.problem().unwrap_or(("", &[]));
     let title = forms::title(problem, settings);
     let form =
         estimators::catalogues().into_iter().find(|form| Some(&form.title) == title.as_ref());
     let names = form.iter().flat_map(|form| form.list.pages.iter().map(Page::name));
-    let mut texts: Vec<String> = names.map(|name| format!("{name} = {{}}")).collect();
+    let mut all: Vec<Candidate> = names.map(|name| Candidate::new(&name, "")).collect();
     if title.as_deref() == Some("transmittance") {
-        texts.extend(of_transmittance(rays.len()));
+        all.extend(of_transmittance(rays.len()));
     }
-    texts.extend(own(settings));
+    all.extend(own(settings));
     // Without a control it is ratio tracking.
-    let mut seen = BTreeSet::from(["double = {}".to_owned()]);
-    texts.retain(|text| seen.insert(text.clone()));
+    let mut seen = BTreeSet::from([Candidate::new("double", "")]);
+    all.retain(|candidate| seen.insert(candidate.clone()));
     let Some(first) = rays.first() else { return Ok(Vec::new()) };
-    match Case::of_body(&replaced(&base.spec, &texts), first) {
-        Ok(_) => Ok(texts),
+    match Case::of_body(&replaced(&base.spec, &all), first) {
+        Ok(_) => Ok(all),
         Err(CaseError::Faulty { source_text, faults }) => {
             let places: Vec<Option<usize>> =
                 faults.iter().map(|fault| place(&fault.path)).collect();
@@ -82,76 +108,69 @@ pub fn listed(base: &Case, rays: &[Body]) -> Result<Vec<String>, CaseError> {
                 return Err(CaseError::Faulty { source_text, faults });
             }
             let wrong: BTreeSet<usize> = places.into_iter().flatten().collect();
-            let kept = texts.into_iter().enumerate().filter(|(at, _)| !wrong.contains(at));
-            Ok(kept.map(|(_, text)| text).collect())
+            let kept = all.into_iter().enumerate().filter(|(at, _)| !wrong.contains(at));
+            Ok(kept.map(|(_, candidate)| candidate).collect())
         }
         Err(other) => Err(other),
     }
 }
 
 /// Settings of the estimators of a transmittance that are tried beside the defaults.
-fn of_transmittance(rays: usize) -> Vec<String> {
-    let mut texts = Vec::new();
+fn of_transmittance(rays: usize) -> Vec<Candidate> {
+    let mut all = Vec::new();
     // On one ray, the majorant of one segment is a constant.
     let segments = SEGMENTS.iter().filter(|&&n| n > 1 || rays > 1);
     let segments = segments.map(|n| format!("sampling.local-majorants.segments = {n}"));
     let cells = CELLS.iter().map(|n| format!("sampling.local-majorants.grid = [{n}, {n}, {n}]"));
     for recipe in segments.chain(cells) {
-        for name in ["woodcock", "local-majorant", "ratio"] {
-            texts.push(format!("{name} = {{ {recipe} }}"));
-        }
-        texts.push(format!("single = {{ rule = \"terminating\", {recipe} }}"));
+        let names = ["woodcock", "local-majorant", "ratio"];
+        all.extend(names.map(|name| Candidate::new(name, &*recipe)));
+        all.push(Candidate::new("single", format!("rule = \"terminating\", {recipe}")));
     }
-    texts.push("residual-ratio = { control = { minimum = {} } }".to_owned());
-    texts
-        .extend(["terminating", "clamped"].map(|rule| format!("single = {{ rule = \"{rule}\" }}")));
+    all.push(Candidate::new("residual-ratio", "control = { minimum = {} }"));
+    let single = |settings: String| Candidate::new("single", settings);
+    all.extend(["terminating", "clamped"].map(|rule| single(format!("rule = \"{rule}\""))));
     for rule in ["non-terminating", "adaptive"] {
-        let text = |albedo| format!("single = {{ rule = \"{rule}\", albedo = {albedo} }}");
-        texts.extend(ALBEDOS.map(text));
+        let of = |albedo| single(format!("rule = \"{rule}\", albedo = {albedo}"));
+        all.extend(ALBEDOS.map(of));
     }
     for rays in PILOTS {
         let recipe = format!("sampling.pilot.rays = {rays}");
-        texts.extend(["ratio", "weighted-delta"].map(|name| format!("{name} = {{ {recipe} }}")));
-        texts.push(format!("single = {{ rule = \"clamped\", {recipe} }}"));
+        all.extend(["ratio", "weighted-delta"].map(|name| Candidate::new(name, &*recipe)));
+        all.push(single(format!("rule = \"clamped\", {recipe}")));
     }
     for points in POINTS {
-        texts.push(format!("double = {{ control = {{ explorers = {{ points = {points} }} }} }}"));
-        let text = |k| {
-            format!(
-                "double = {{ control = {{ explorers = {{ points = {points}, octaves = {k} }} }} }}"
-            )
-        };
-        texts.extend(OCTAVES.map(text));
+        let explorers =
+            |more: String| format!("control = {{ explorers = {{ points = {points}{more} }} }}");
+        all.push(Candidate::new("double", explorers(String::new())));
+        let of = |octaves| Candidate::new("double", explorers(format!(", octaves = {octaves}")));
+        all.extend(OCTAVES.map(of));
     }
-    texts
+    all
 }
 
 /// Estimators that the case lists, without σ̂ and without the declaration of a bias.
-fn own(settings: &[Entry]) -> Vec<String> {
+fn own(settings: &[Entry]) -> Vec<Candidate> {
     let list = settings.iter().find(|entry| entry.key == "estimators");
     let Some(Value::Array(items)) = list.map(|entry| &entry.node.value) else { return Vec::new() };
-    let text = |item: &Node| match &item.value {
+    let candidate = |item: &Node| match &item.value {
         Value::Table(choice) => {
             let Entry { key, node, .. } = choice.first()?;
             let Value::Table(inner) = &node.value else { return None };
             let kept = |entry: &&Entry| !matches!(&*entry.key, "sampling" | "expect");
-            let kept = inner.iter().filter(kept).cloned().collect();
-            Some(format!("{key} = {}", inline(&Value::Table(kept))))
+            Some(Candidate::new(key, pairs(inner.iter().filter(kept))))
         }
-        Value::Text(name) => Some(format!("{name} = {{}}")),
+        Value::Text(name) => Some(Candidate::new(name, "")),
         _ => None,
     };
-    items.iter().filter_map(text).collect()
+    items.iter().filter_map(candidate).collect()
 }
 
 /// Returns a value in one line of TOML.
 fn inline(value: &Value) -> String {
     match value {
         Value::Table(entries) if entries.is_empty() => "{}".to_owned(),
-        Value::Table(entries) => {
-            let pair = |entry: &Entry| format!("{} = {}", entry.key, inline(&entry.node.value));
-            format!("{{ {} }}", entries.iter().map(pair).collect::<Vec<_>>().join(", "))
-        }
+        Value::Table(entries) => format!("{{ {} }}", pairs(entries)),
         Value::Array(items) => {
             let items: Vec<String> = items.iter().map(|item| inline(&item.value)).collect();
             format!("[{}]", items.join(", "))
@@ -163,14 +182,21 @@ fn inline(value: &Value) -> String {
     }
 }
 
+/// Returns keys and values in one line of TOML.
+fn pairs<'a>(entries: impl IntoIterator<Item = &'a Entry>) -> String {
+    let pair = |entry: &Entry| format!("{} = {}", entry.key, inline(&entry.node.value));
+    entries.into_iter().map(pair).collect::<Vec<_>>().join(", ")
+}
+
 /// Returns the index of the candidate to which the path of a mistake leads.
 fn place(path: &str) -> Option<usize> {
     path.split_once("estimators[")?.1.split_once(']')?.0.parse().ok()
 }
 
 /// Returns a spec with these estimators in place of its own, and a σ̂ of 1 until one is chosen.
-pub fn replaced(spec: &Spec, texts: &[String]) -> Spec {
-    let list: Vec<String> = texts.iter().map(|text| format!("{{ {text} }}")).collect();
+pub fn replaced(spec: &Spec, candidates: &[Candidate]) -> Spec {
+    let list: Vec<String> =
+        candidates.iter().map(|candidate| format!("{{ {} }}", candidate.line())).collect();
     let text = format!("sampling.constant.value = 1\nestimators = [{}]", list.join(", "));
     spec.with_problem(|settings| {
         settings.retain(|entry| !REPLACED.contains(&&*entry.key));
@@ -181,45 +207,4 @@ pub fn replaced(spec: &Spec, texts: &[String]) -> Spec {
 /// Returns the settings that a text has, as parts of a spec.
 pub fn parsed(spec: &Spec, text: &str) -> Vec<Entry> {
     Source { text: text.to_owned(), ..spec.source().clone() }.parse(&RefCell::default())
-}
-
-/// Returns a candidate without its numbers.
-pub fn family(text: &str) -> String {
-    let is_kept = |c: &char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | ' '));
-    let words = text.replace("].", "]");
-    words.chars().filter(is_kept).collect()
-}
-
-/// Returns whether σ̂ of a candidate is given in steps along the ray.
-pub fn is_profile(text: &str) -> bool {
-    text.contains(RECIPE)
-}
-
-/// Returns whether σ̂ of a candidate is learned by lookups at random places.
-pub fn is_learned(text: &str) -> bool {
-    text.contains("sampling.pilot")
-}
-
-/// Returns whether a candidate has a weight at every collision: its losses `J_k = ∫ ρ^k/σ̂^{k−1}` at one σ̂ give those at
-/// all multiples of it.
-pub fn weighs(text: &str) -> bool {
-    text.split_once(" = ").is_some_and(|(name, _)| WEIGHING.contains(&name))
-}
-
-/// Returns the rule of a product estimator with one free constant σ̂; `None` for other candidates.
-pub fn rule(text: &str) -> Option<Collisions> {
-    let (name, settings) = text.split_once(" = ")?;
-    let albedo = || settings.split_once("albedo = ")?.1.split([',', ' ']).next()?.parse().ok();
-    let is = |rule: &str| settings.contains(&format!("rule = \"{rule}\""));
-    let single = match name {
-        _ if settings.contains("sampling.") => return None,
-        _ if weighs(text) => return Some(Collisions::Weight),
-        "weighted-delta" => Single::NonTerminating { albedo: 1.0 },
-        "single" if is("terminating") => Single::Terminating,
-        "single" if is("clamped") => Single::Clamped,
-        "single" if is("adaptive") => Single::Adaptive { albedo: albedo()? },
-        "single" => Single::NonTerminating { albedo: albedo()? },
-        _ => return None,
-    };
-    Some(Collisions::Single(single))
 }

@@ -129,11 +129,11 @@ impl Prices {
     /// where a candidate cannot be drawn.
     ///
     /// Candidates are timed in turn, round by round: other work on the machine slows all of them.
-    pub fn corrected(&mut self, case: &Case, wanted: &[Wanted<'_>]) -> Vec<Option<Price>> {
+    pub fn corrected(&mut self, case: &Case, wanted: &[Wanted]) -> Vec<Option<Price>> {
         if self.given.is_some() {
             return vec![None; wanted.len()];
         }
-        let key = |&(text, (_, at), _): &Wanted| format!("{text} at {:?}", at.map(|(_, x)| x));
+        let key = |(line, (_, at), _): &Wanted| format!("{line} at {:?}", at.map(|(_, x)| x));
         let timer = |wanted: &Wanted| {
             let is_known = self.known.contains_key(&key(wanted));
             (!is_known).then(|| Timer::new(case, wanted.1, ROUNDS[1]))?
@@ -176,8 +176,8 @@ fn file(folder: &Path, spec: &Spec) -> PathBuf {
     folder.join(format!("{:016x}.json", name_hash(&name)))
 }
 
-/// Text of a candidate, its index with a setting, and its price by draws at others.
-pub type Wanted<'a> = (&'a str, (usize, Variation), Price);
+/// Line of a candidate, its index with a setting, and its price by draws at others.
+pub type Wanted = (String, (usize, Variation), Price);
 
 /// Measures a candidate at two places.
 fn measured(case: &Case, (estimator, places): (usize, [Variation; 2])) -> Option<Price> {

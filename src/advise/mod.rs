@@ -39,11 +39,11 @@ pub const CATALOGUE: PageList = PageList {
 };
 
 use crate::case::{CaseError, Spec};
-use candidates::Collisions;
 use costs::Prices;
 use media::catalogue::{Page, PageList};
 use profile::Profile;
 use study::Study;
+use theory::collisions::Collisions;
 use theory::parallel;
 
 /// Number of rows with a price that is corrected by draws at the advised σ̂.
@@ -132,9 +132,9 @@ impl Advice {
 /// Mistakes in the case.
 pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
     let (base, rays) = rays::read(spec, request.rays, request.seed)?;
-    let texts = candidates::listed(&base, &rays)?;
+    let listed = candidates::listed(&base, &rays)?;
     let mut prices = Prices::open(&request.costs, &base.spec);
-    let mut study = Study::new(&base, &rays, texts, request, &mut prices)?;
+    let mut study = Study::new(&base, &rays, listed, request, &mut prices)?;
     let found = parallel::map(&study.families(), |family| Row::new(&study, &study.best(family)?));
     let mut rows: Vec<Row> = found.into_iter().flatten().collect();
     row::rank(&mut rows);
@@ -143,15 +143,15 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
     let mut profiles = Vec::new();
     // Over several rays, the best σ̂ at a place differs from ray to ray.
     for is_weight in [true, false].into_iter().filter(|_| rays.len() == 1) {
-        let rule = |row: &Row| candidates::rule(&study.texts[row.candidate]);
+        let rule = |row: &Row| study.rule(row.candidate);
         let asked = rows.iter().filter_map(|row| Some((row, rule(row)?)));
         let asked = asked.filter(|(_, rule)| (*rule == Collisions::Weight) == is_weight);
         // A σ̂ cannot gain where draws are exact.
         let asked = asked.filter(|(row, _)| row.score.variance > 0.0);
         let asked = asked.min_by(|a, b| a.0.goal.total_cmp(&b.0.goal));
         let Some((best, rule)) = asked else { continue };
-        let Some((profile, text)) = profile::of(&study, &rows, best, rule) else { continue };
-        let own = Study::new(&base, &rays, vec![text], request, &mut prices)?;
+        let Some((profile, candidate)) = profile::of(&study, &rows, best, rule) else { continue };
+        let own = Study::new(&base, &rays, vec![candidate], request, &mut prices)?;
         let row = own.best(&[0]).and_then(|best| Row::new(&own, &best));
         profiles.extend(row.map(|row| (profile, Row { candidate: best.candidate, ..row })));
     }
@@ -179,10 +179,10 @@ pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
 
 /// Returns the estimators without a row, with the reasons.
 fn refused(study: &Study, rows: &[Row]) -> Vec<Refused> {
-    let name = |candidate: usize| study.texts[candidate].split(" = ").next().unwrap_or_default();
+    let name = |candidate: usize| study.candidates[candidate].name.as_str();
     let has_row = |one: &str| rows.iter().any(|row| name(row.candidate) == one);
     let mut refused: Vec<Refused> = Vec::new();
-    for candidate in 0..study.texts.len() {
+    for candidate in 0..study.candidates.len() {
         let estimator = name(candidate);
         if has_row(estimator) || refused.iter().any(|other| other.estimator == estimator) {
             continue;

@@ -13,12 +13,11 @@
 //! behind t, the best σ̂(t) minimises `E j(σ̂) + b/cost (σ̂ e^{−K} − d(σ̂) R)` (Pontryagin's principle). Here
 //! `E = e^J/(e^J − 1)`, `j = σ̂ E[(1 − W)²]` and `d = σ̂(1 − q)`. Steps are improved one by one until nothing is gained.
 
-use super::candidates::{Collisions, RECIPE};
+use super::candidates::Candidate;
 use super::row::Row;
 use super::study::Study;
-use numeric::digits::number;
-use theory::collisions::Rule;
 use theory::collisions::rules::{Single, Weight};
+use theory::collisions::{Collisions, Rule};
 use theory::prediction::search::{Goal, up};
 
 /// Steps of a profile.
@@ -51,8 +50,13 @@ pub struct Profile {
 
 /// Returns the profile of a candidate with one free constant σ̂, on the first ray of a study, and the candidate with it.
 /// It is compared with the rows of others.
-pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(Profile, String)> {
-    let (case, text) = (&study.cases[0], &study.texts[row.candidate]);
+pub fn of(
+    study: &Study,
+    rows: &[Row],
+    row: &Row,
+    rule: Collisions,
+) -> Option<(Profile, Candidate)> {
+    let (case, candidate) = (&study.cases[0], &study.candidates[row.candidate]);
     let (price, (_, start)) = (study.prices[row.candidate]?, row.setting?);
     let medium = &case.scenario.media()[0];
     let control = case.at(None).ok()?.control(row.candidate, case.pilots(1, row.candidate))?;
@@ -82,16 +86,11 @@ pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(P
     // The same walk with local majorants, at the same price.
     let is_local = |other: &&Row| {
         [&other.estimator, &other.control] == [&row.estimator, &row.control]
-            && other.sampling.starts_with("local majorants")
+            && case.scenario.is_local(other.candidate)
     };
     let work = |row: &Row| row.score.variance * (price[0] + price[1] * row.score.lookups);
     let local = rows.iter().filter(is_local).map(work).reduce(f64::min);
     let breaks: Vec<f64> = (0..=STEPS).map(|step| place(step, 0.0)).collect();
-    let list = |numbers: &[f64]| numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", ");
-    let sampling =
-        format!("{RECIPE} = {{ breaks = [{}], values = [{}] }}", list(&breaks), list(&values));
-    let settings = text.strip_suffix('}')?.trim_end();
-    let comma = if settings.ends_with('{') { "" } else { "," };
     let residual = (0..STEPS * 4).map(|i| {
         let t = place(i / 4, (i % 4) as f64 / 4.0 + 0.125);
         [t, residual(t).abs()]
@@ -104,7 +103,8 @@ pub fn of(study: &Study, rows: &[Row], row: &Row, rule: Collisions) -> Option<(P
         breaks,
         values,
     };
-    Some((profile, format!("{settings}{comma} {sampling} }}")))
+    let candidate = candidate.with_profile(&profile.breaks, &profile.values);
+    Some((profile, candidate))
 }
 
 /// The residual in the steps of a ray, and what a walk costs.

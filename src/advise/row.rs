@@ -1,7 +1,6 @@
 //! Rows of an advice: an estimator with its best settings, what it costs, and how far σ̂ may be wrong.
 
 use super::Target;
-use super::candidates;
 use super::costs::{Prices, Wanted};
 use super::score::Score;
 use super::study::{Best, Study};
@@ -96,7 +95,7 @@ impl Row {
     /// Returns the row of a setting, evaluated on all rays; `None` if it is refused on one.
     pub fn new(study: &Study, best: &Best) -> Option<Self> {
         let (candidate, (setting, score)) = (best.candidate, study.on_all(best)?);
-        let (at, text) = (study.cases[0].at(None).ok()?, &study.texts[candidate]);
+        let (at, listed) = (study.cases[0].at(None).ok()?, &study.candidates[candidate]);
         let id = at.id(candidate);
         let edge = |x, sign, level| best.goal.edge(x, sign, level, MAX_FACTOR);
         let margins = |x| [-1.0, 1.0].map(|sign| edge(x, sign, 2.0 * best.goal.of(x)));
@@ -105,12 +104,12 @@ impl Row {
         let below = below.map(|((what, _), least)| (candidate, Some((what, BELOW * least))));
         let bound = below.and_then(|below| study.violated(below, 0..study.cases.len()));
         let own = match () {
-            () if candidates::is_profile(text) => "|σ_t − σ_c| along the ray".to_owned(),
-            () if candidates::is_learned(text) => "pilot rays".to_owned(),
+            () if listed.is_profile => "|σ_t − σ_c| along the ray".to_owned(),
+            () if study.learns(candidate) => "pilot rays".to_owned(),
             () => at.needs(candidate),
         };
         let group = match () {
-            () if candidates::is_profile(text) || own.contains('τ') => Group::Informed,
+            () if listed.is_profile || own.contains('τ') => Group::Informed,
             () if score.is_bound => Group::Bounded,
             () => Group::Ranked,
         };
@@ -132,7 +131,7 @@ impl Row {
             margins: setting.map(|(_, x)| margins(x)),
             least,
             needs: needs.into_iter().flatten().collect::<Vec<_>>().join(", "),
-            lines: lines(text, constant, factor),
+            lines: lines(&listed.line(), constant, factor),
             ..Self::default()
         };
         row.weigh(score, study.request.target);
@@ -180,17 +179,17 @@ impl Row {
 }
 
 /// Returns the lines for a case: σ̂, if it is one constant, and the list of estimators.
-fn lines(text: &str, constant: Option<f64>, factor: Option<f64>) -> String {
+fn lines(line: &str, constant: Option<f64>, factor: Option<f64>) -> String {
     let constant = constant.map(|value| format!("sampling = {}\n", number(value)));
     let factor = factor.map(|factor| format!("sweep.sampling-scale = [{}]\n", number(factor)));
-    format!("{}estimators = [{{ {text} }}]", constant.or(factor).unwrap_or_default())
+    format!("{}estimators = [{{ {line} }}]", constant.or(factor).unwrap_or_default())
 }
 
 /// Corrects the prices of rows by draws at their advised settings, unless prices are given.
 pub fn correct(rows: &mut [Row], study: &mut Study, prices: &mut Prices) {
     let wanted = |row: &Row| {
-        let text = &*study.texts[row.candidate];
-        Some((text, (row.candidate, row.setting), study.prices[row.candidate]?))
+        let line = study.candidates[row.candidate].line();
+        Some((line, (row.candidate, row.setting), study.prices[row.candidate]?))
     };
     // Every row has a price.
     let wanted: Vec<Wanted> = rows.iter().filter_map(wanted).collect();

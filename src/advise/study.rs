@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use super::Request;
-use super::candidates::{self, family};
+use super::candidates::{self, Candidate};
 use super::costs::{Price, Prices};
 use super::score::{Score, relative_variance, weights};
 use crate::case::sweep::{SweptQuantity, Variation};
 use crate::case::{Case, CaseError};
 use estimators::Refusal;
 use media::Body;
+use theory::collisions::Collisions;
 use theory::prediction::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, Least, UNKNOWN, up};
 use theory::{Moments, Prediction, parallel};
 
@@ -44,8 +45,8 @@ pub type Setting = (usize, Variation);
 pub struct Study<'a> {
     /// Question.
     pub request: &'a Request,
-    /// Candidates, as entries of a list of estimators.
-    pub texts: Vec<String>,
+    /// Candidates.
+    pub candidates: Vec<Candidate>,
     /// One case for each ray, with the candidates in its list.
     pub cases: Vec<Case>,
     /// Price of each candidate; `None` where it cannot be drawn.
@@ -84,17 +85,17 @@ impl<'a> Study<'a> {
     pub fn new(
         base: &Case,
         rays: &[Body],
-        texts: Vec<String>,
+        candidates: Vec<Candidate>,
         request: &'a Request,
         market: &mut Prices,
     ) -> Result<Self, CaseError> {
-        let spec = candidates::replaced(&base.spec, &texts);
+        let spec = candidates::replaced(&base.spec, &candidates);
         let cases = parallel::map(rays, |ray| Case::of_body(&spec, ray));
         let cases: Vec<Case> = cases.into_iter().collect::<Result<_, _>>()?;
         let probes = cases.len().min(PROBES);
         let probe = |i: usize| (2 * i + 1) * cases.len() / (2 * probes);
         let probes: Vec<usize> = (0..probes).map(probe).collect();
-        let (weights, free) = (weights(base, &cases), free(&cases, &probes, &texts));
+        let (weights, free) = (weights(base, &cases), free(&cases, &probes, &candidates));
         let case = &cases[cases.len() / 2];
         // Walks of at least one flight or so: shorter ones say little about a lookup.
         let length = case.scenario.media()[0].support().length();
@@ -104,19 +105,42 @@ impl<'a> Study<'a> {
             }
             _ => free.scale,
         };
-        let price = |(candidate, text): (usize, &String)| {
-            // The numbers of a profile depend on the prices.
-            let key = if candidates::is_profile(text) { family(text) } else { text.clone() };
+        let price = |(candidate, own): (usize, &Candidate)| {
             let at = |factor| free[candidate].map(|free: Free| (free.what, begin(free) * factor));
-            market.of(key, case, (candidate, [at(1.0), at(4.0)]))
+            market.of(own.price_key(), case, (candidate, [at(1.0), at(4.0)]))
         };
-        let prices: Vec<Option<Price>> = texts.iter().enumerate().map(price).collect();
+        let prices: Vec<Option<Price>> = candidates.iter().enumerate().map(price).collect();
         let mut lookups: Vec<f64> = prices.iter().flatten().map(|price| price.lookup).collect();
         lookups.retain(|&lookup| lookup > 0.0);
         lookups.sort_by(f64::total_cmp);
         let setup_lookup = lookups.get(lookups.len() / 2).copied().unwrap_or(0.0);
         let at_scale = Mutex::default();
-        Ok(Self { request, texts, cases, prices, setup_lookup, weights, probes, free, at_scale })
+        Ok(Self {
+            request,
+            candidates,
+            cases,
+            prices,
+            setup_lookup,
+            weights,
+            probes,
+            free,
+            at_scale,
+        })
+    }
+
+    fn collisions(&self, candidate: usize) -> Option<Collisions> {
+        self.cases[0].scenario.collisions(candidate)
+    }
+
+    /// Returns whether a candidate learns its σ̂ by lookups at random places.
+    pub fn learns(&self, candidate: usize) -> bool {
+        self.cases[0].scenario.learns(candidate)
+    }
+
+    /// Returns the rule of a product estimator with one free constant σ̂; `None` for other candidates.
+    pub fn rule(&self, candidate: usize) -> Option<Collisions> {
+        let is_constant = self.free[candidate]?.what == SweptQuantity::Sampling;
+        self.collisions(candidate).filter(|_| is_constant)
     }
 
     /// Predicts a candidate on a ray, for a seed of its pilot rays; `None` if it is refused there.
@@ -128,7 +152,8 @@ impl<'a> Study<'a> {
     /// Estimates variance and lookups of a candidate on a ray, for searches: with a weight at every collision, without new
     /// integrals.
     fn estimate(&self, (candidate, at): Setting, (ray, seed): (usize, u64)) -> Option<Prediction> {
-        let free = self.free[candidate].filter(|_| candidates::weighs(&self.texts[candidate]));
+        let is_weight = self.collisions(candidate) == Some(Collisions::Weight);
+        let free = self.free[candidate].filter(|_| is_weight);
         let case = &self.cases[ray];
         let estimate = |at| case.at(at).ok()?.estimate(candidate, case.pilots(seed, candidate));
         let Some((Free { what, scale, .. }, (_, x))) = free.zip(at) else { return estimate(at) };
@@ -186,7 +211,7 @@ impl<'a> Study<'a> {
     ) -> Option<Score> {
         let price = self.prices[candidate]?;
         let mut score = Score::default();
-        let is_learned = self.cases.len() == 1 && candidates::is_learned(&self.texts[candidate]);
+        let is_learned = self.cases.len() == 1 && self.learns(candidate);
         let seeds = if is_learned { SEEDS } else { 1 };
         let share = 1.0 / (rays.len() as f64 * seeds as f64);
         for (&ray, seed) in rays.iter().flat_map(|ray| (1..=seeds).map(move |seed| (ray, seed))) {
@@ -254,8 +279,8 @@ impl<'a> Study<'a> {
     /// Returns the candidates with a price, family by family.
     pub fn families(&self) -> Vec<Vec<usize>> {
         let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-        for candidate in (0..self.texts.len()).filter(|&i| self.prices[i].is_some()) {
-            families.entry(family(&self.texts[candidate])).or_default().push(candidate);
+        for candidate in (0..self.candidates.len()).filter(|&i| self.prices[i].is_some()) {
+            families.entry(self.candidates[candidate].family()).or_default().push(candidate);
         }
         families.into_values().collect()
     }
@@ -325,14 +350,14 @@ impl<'a> Study<'a> {
 }
 
 /// Returns the free quantity of each candidate: a constant σ̂, or a factor on σ̂.
-fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>> {
+fn free(cases: &[Case], probes: &[usize], candidates: &[Candidate]) -> Vec<Option<Free>> {
     let mut scales: BTreeMap<String, (f64, usize)> = BTreeMap::new();
-    let mut free = |(candidate, text): (usize, &String)| {
+    let mut free = |(candidate, own): (usize, &Candidate)| {
         let scenario = &cases[0].scenario;
         let is_free = |what: &SweptQuantity| scenario.depends_on(candidate, *what);
         let what =
             [SweptQuantity::Sampling, SweptQuantity::SamplingScale].into_iter().find(is_free)?;
-        if candidates::is_profile(text) {
+        if own.is_profile {
             return None;
         }
         if what == SweptQuantity::SamplingScale {
@@ -350,5 +375,5 @@ fn free(cases: &[Case], probes: &[usize], texts: &[String]) -> Vec<Option<Free>>
         let ray = Some(ray).filter(|ray| !probes.contains(ray));
         Some(Free { what, scale: if scale > 0.0 { scale } else { 1.0 }, ray })
     };
-    texts.iter().enumerate().map(&mut free).collect()
+    candidates.iter().enumerate().map(&mut free).collect()
 }

@@ -37,7 +37,7 @@ pub fn read_single_channels(root: &mut [Entry], own_pages: &OwnPages) {
     }
 }
 
-/// Returns true if media, albedos and phase functions are given for one channel, some of them in a list.
+/// Returns whether media, albedos and phase functions are given for one channel, some of them in a list.
 fn has_one_channel(settings: &[Entry]) -> bool {
     let lists = settings.iter().filter(|entry| LISTS[..4].iter().any(|(key, _)| *key == entry.key));
     let lengths = lists.filter_map(|entry| match &entry.node.value {
@@ -48,7 +48,7 @@ fn has_one_channel(settings: &[Entry]) -> bool {
     !lengths.is_empty() && lengths.iter().all(|&length| length == 1)
 }
 
-/// Returns true if an estimator is listed that only the forms of a problem in several channels have.
+/// Returns whether an estimator is listed that only the forms of a problem in several channels have.
 fn needs_channels(problem: &str, settings: &[Entry], own_pages: &OwnPages) -> bool {
     let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
     let (several, one): (Vec<_>, Vec<_>) = forms.partition(|form| {

@@ -17,6 +17,7 @@ use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise, Volume, misses};
 use numeric::rng::Address;
+use theory::collisions::Collisions;
 use theory::problems::Transmittance;
 use theory::{Mesh, Prediction};
 
@@ -112,6 +113,23 @@ impl Scenario {
     /// Returns whether the case declares an estimator biased.
     pub fn expects_bias(&self, estimator: usize) -> bool {
         self.estimators.list[estimator].expect_biased
+    }
+
+    /// Returns the rule of an estimator at a collision, if a draw is a product of its factors.
+    pub fn collisions(&self, estimator: usize) -> Option<Collisions> {
+        self.estimators.list[estimator].traits.collisions
+    }
+
+    /// Returns whether an estimator learns its σ̂ by lookups at random places.
+    pub fn learns(&self, estimator: usize) -> bool {
+        let recipe = self.estimators.sampling_of(&self.estimators.list[estimator]);
+        recipe.is_some_and(sampling::Recipe::learns)
+    }
+
+    /// Returns whether σ̂ of an estimator is a majorant of each part of the ray or the volume.
+    pub fn is_local(&self, estimator: usize) -> bool {
+        let recipe = self.estimators.sampling_of(&self.estimators.list[estimator]);
+        recipe.is_some_and(sampling::Recipe::is_local)
     }
 
     fn mesh(&self) -> &Arc<Mesh> {

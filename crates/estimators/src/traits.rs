@@ -1,6 +1,7 @@
 //! Properties of an estimator that depend neither on its problem nor on what it works on.
 
 use crate::recipes::controls;
+use theory::collisions::Collisions;
 
 /// Inputs of an estimator beside the medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,6 +35,8 @@ pub struct Traits {
     pub without_control: Option<&'static str>,
     /// The control that it uses where the case gives none.
     pub default_control: Option<Box<dyn controls::Recipe>>,
+    /// Rule at a collision, if a draw is a product of its factors.
+    pub collisions: Option<Collisions>,
     /// Quantity of the medium that it needs beside lookups, σ̂ and control, such as `τ`.
     pub needs: Option<&'static str>,
     /// True if draws have a [`Draw::defect`](crate::Draw::defect).
@@ -52,6 +55,7 @@ impl Traits {
             albedo: None,
             without_control: None,
             default_control: None,
+            collisions: None,
             needs: None,
             has_invariant: false,
             skips: false,

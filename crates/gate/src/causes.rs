@@ -20,7 +20,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Returns true if the quantity deviates.
+    /// Returns whether the quantity deviates.
     pub fn is_off(self) -> bool {
         self != Self::Right
     }
@@ -337,7 +337,7 @@ pub static TABLE: &[Line] = &[
     },
 ];
 
-/// Returns true if the mean, the variance or the number of lookups deviates to one side.
+/// Returns whether the mean, the variance or the number of lookups deviates to one side.
 fn is_sided(pattern: &Pattern) -> bool {
     pattern.mean.is_off()
         || pattern.variance.is_off()

@@ -52,12 +52,12 @@ pub use crate::files::Unreadable;
 pub const MAX_SAMPLES: u64 = 1 << 27;
 
 impl Format {
-    /// Returns true if the file has the positions of its voxels.
+    /// Returns whether the file has the positions of its voxels.
     pub fn has_transform(self) -> bool {
         matches!(self, Self::Vdb | Self::Nvdb)
     }
 
-    /// Returns true if grids have names.
+    /// Returns whether grids have names.
     pub fn has_names(self) -> bool {
         matches!(self, Self::Vdb | Self::Nvdb | Self::Pbrt)
     }

@@ -104,7 +104,7 @@ impl Heights {
         t * self.slope + self.start
     }
 
-    /// Returns true if the ray climbs by less than rounding over its length.
+    /// Returns whether the ray climbs by less than rounding over its length.
     pub fn is_level(&self) -> bool {
         (self.slope * self.length).abs() <= f64::EPSILON * self.start.abs().max(f64::MIN_POSITIVE)
     }

@@ -60,7 +60,7 @@ fn of_volume(volume: &Volume, ray: &Ray, medium: &Medium) -> Option<String> {
     })
 }
 
-/// Returns true if σ_t is 0 on all of an interval of positive length.
+/// Returns whether σ_t is 0 on all of an interval of positive length.
 fn is_nothing(medium: &Medium) -> bool {
     let support = medium.support();
     !support.is_empty() && medium.optical_depth(support).value == 0.0

@@ -62,7 +62,7 @@ impl Turn {
         L::select(inside, value, zero)
     }
 
-    /// Returns true if a position in lattice coordinates is on the lattice.
+    /// Returns whether a position in lattice coordinates is on the lattice.
     pub(super) fn holds(&self, u: [f64; 3]) -> bool {
         (0..3).all(|j| self.ends[j][0] <= u[j] && u[j] <= self.ends[j][1])
     }

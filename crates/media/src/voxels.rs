@@ -96,17 +96,17 @@ impl Voxels {
         self.peak
     }
 
-    /// Returns true if a lookup takes the nearest sample.
+    /// Returns whether a lookup takes the nearest sample.
     pub fn is_nearest(&self) -> bool {
         self.interpolation == Interpolation::Nearest
     }
 
-    /// Returns true if the field jumps between cells.
+    /// Returns whether the field jumps between cells.
     pub fn jumps(&self) -> bool {
         self.is_nearest() || self.turn.is_some()
     }
 
-    /// Returns true if the axes of the lattice are not those of the world.
+    /// Returns whether the axes of the lattice are not those of the world.
     pub fn is_turned(&self) -> bool {
         self.turn.is_some()
     }

@@ -164,7 +164,7 @@ impl Span {
         (self.to - self.from).max(0.0)
     }
 
-    /// Returns true if the stretch has no length.
+    /// Returns whether the stretch has no length.
     pub fn is_empty(self) -> bool {
         self.length() <= 0.0
     }
@@ -208,7 +208,7 @@ impl Span {
         if from < to { Self { from, to } } else { Self::empty(from.min(self.to).max(self.from)) }
     }
 
-    /// Returns true if `t` lies strictly inside.
+    /// Returns whether `t` lies strictly inside.
     pub fn contains_inside(self, t: f64) -> bool {
         self.from < t && t < self.to
     }

@@ -15,14 +15,14 @@ pub trait Mask:
     + BitOrAssign
     + BitXorAssign
 {
-    /// Returns true if an element is true.
+    /// Returns whether an element is true.
     fn any(self) -> bool;
 
-    /// Returns true if an element may be true. A scalar tests it, to skip work. A pack returns true without a test: of
+    /// Returns whether an element may be true. A scalar tests it, to skip work. A pack returns true without a test: of
     /// eight walks, some usually need the work, and it changes nothing in the others.
     fn maybe(self) -> bool;
 
-    /// Returns true if at least `of_pack` elements of a pack are true, so that common work pays; a scalar never waits.
+    /// Returns whether at least `of_pack` elements of a pack are true, so that common work pays; a scalar never waits.
     fn are_enough(self, of_pack: u32) -> bool;
 
     /// Returns the elements as bits, the first one lowest.

@@ -2,9 +2,10 @@
 
 use super::{ANY, SINES, asked, request};
 use crate::common::{failing, none, rows};
-use trueflight::advise::candidates::{Collisions, RECIPE};
+use trueflight::advise::candidates::RECIPE;
 use trueflight::advise::profile::{PLACES, STEPS, Steps};
 use trueflight::advise::{Costs, Group};
+use trueflight::theory::collisions::Collisions;
 use trueflight::theory::collisions::Rule;
 use trueflight::theory::collisions::rules::{Single, Weight};
 

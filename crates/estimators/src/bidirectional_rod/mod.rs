@@ -3,6 +3,7 @@
 mod batch;
 pub mod directional_mis;
 pub mod full_mis;
+pub mod path;
 pub mod subpath;
 pub mod technique;
 pub mod walk;
@@ -172,7 +173,7 @@ fn fill(steps: Method, kernel: Kernel, setup: &Setup<BidirectionalRod>, request:
     );
 }
 
-/// Returns true if no path with `order` scatterings can reach the sensor: then the shares of its techniques are not
+/// Returns whether no path with `order` scatterings can reach the sensor: then the shares of its techniques are not
 /// defined.
 fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
     let is_transmitted = problem.sensor == Sensor::Transmitted;

@@ -5,7 +5,7 @@
 //! yet. A flight goes on until the last lane has come to its next real collision. The other lanes and their streams
 //! stand still until then.
 
-use super::walk::Path;
+use super::path::Path;
 use crate::Setup;
 use media::sampling::BothWays;
 use numeric::rng::Random;

@@ -9,7 +9,7 @@
 //! leave    one: a shadow ray is cast from the point that was kept;  the draw is ±Σ|y| T̂_shadow
 //! ```
 
-use super::ground::RaySetup;
+use super::ray_setup::RaySetup;
 use super::shadow::ToLight;
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::Batches;

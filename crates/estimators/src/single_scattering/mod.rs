@@ -3,10 +3,11 @@
 pub mod attenuation_driven;
 pub mod attenuation_resampled;
 pub mod delta_tracking;
-mod ground;
 mod interactions;
 pub mod main_part;
 pub mod plan;
+pub mod points;
+mod ray_setup;
 pub mod scattering_driven;
 mod shadow;
 mod shared;

@@ -4,9 +4,10 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
-use super::ground::RaySetup;
 use super::interactions::Interactions;
 use super::main_part::{self, MainPart};
+pub use super::points::{Absorption, Vertices};
+use super::ray_setup::RaySetup;
 use super::shadow::require_shadow;
 use super::shared::Shared;
 use super::vertices::{Right, ToVertices, WalkEvents};
@@ -20,12 +21,10 @@ use media::{Control, Lookups};
 use numeric::geometry::Bounds;
 use numeric::rng::Stream;
 use theory::Prediction;
-use theory::light::Heuristic;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{
-    Camera, CameraTracking, Collisions, Mis, Node, NullPaths, Scene, TechniqueMoments, Tracking,
-    walks as along,
+    Camera, CameraTracking, Mis, Node, NullPaths, Scene, TechniqueMoments, Tracking, walks as along,
 };
 
 /// An estimator: its technique, and its shadow rays.
@@ -50,107 +49,7 @@ pub enum Technique {
     Shared(usize),
 }
 
-/// Scattering points that are chosen one after the other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Vertices {
-    /// Tracking of the transmittance from the ray's origin.
-    pub camera: CameraTracking,
-    /// True if there is a point from the light.
-    pub light: bool,
-    /// True if there is a point from the main part of the control.
-    pub main: bool,
-    /// Treatment of absorption on the way to the first real collision; `None` without such a point.
-    pub collision: Option<Absorption>,
-    /// True if a draw has only one of these points, chosen at random.
-    pub is_one: bool,
-    /// Heuristic that weights a point from the light and a collision.
-    pub heuristic: Heuristic,
-}
-
-/// Effect of absorption on a walk.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Absorption {
-    /// The albedo is a factor of the score of a real collision.
-    Weight,
-    /// Absorption ends walks.
-    Analog,
-}
-
-impl Absorption {
-    /// Reads `absorption`.
-    pub fn read(settings: &Settings) -> Option<Self> {
-        let word = settings.word_or("absorption", &["weight", "analog"], "weight")?;
-        Some(if word == "analog" { Self::Analog } else { Self::Weight })
-    }
-
-    /// The probability that a real collision scatters.
-    #[inline(always)]
-    pub fn scatters(self, albedo: f64) -> f64 {
-        if self == Self::Analog { albedo } else { 1.0 }
-    }
-
-    fn collisions(self, setup: &Setup<SingleScattering>) -> Collisions<'_> {
-        let scatters = self.scatters(setup.problem.albedo());
-        Collisions { medium: setup.problem.medium(), sampling: &setup.fields.sampling, scatters }
-    }
-}
-
 impl Vertices {
-    /// A point from the light with an exact transmittance from the ray's origin.
-    pub const FROM_LIGHT: Self = Self {
-        camera: CameraTracking::Exact,
-        light: true,
-        main: false,
-        collision: None,
-        is_one: false,
-        heuristic: Heuristic::Balance,
-    };
-
-    /// Reads `camera`, one of `words`.
-    pub fn read(self, settings: &Settings, words: &[&'static str]) -> Option<Self> {
-        let camera = match settings.word_or("camera", words, "exact")? {
-            "ratio" => CameraTracking::Ratio,
-            "delta" => CameraTracking::Delta,
-            _ => CameraTracking::Exact,
-        };
-        Some(Self { camera, ..self })
-    }
-
-    fn is_chosen(self) -> bool {
-        self.light || self.main
-    }
-
-    fn label(self) -> String {
-        let Self { camera, is_one, heuristic, .. } = self;
-        let Some(absorption) = self.collision else {
-            let word = match camera {
-                CameraTracking::Exact => "exact",
-                CameraTracking::Ratio => "ratio",
-                CameraTracking::Delta => "delta",
-            };
-            return format!("{word} camera, ");
-        };
-        let said = [
-            (camera == CameraTracking::Ratio, "null paths, "),
-            (absorption == Absorption::Analog, "analog, "),
-            (is_one, "one sample, "),
-            (heuristic == Heuristic::Power, "power, "),
-        ];
-        said.iter().filter(|(is, _)| *is).map(|(_, word)| *word).collect()
-    }
-
-    fn inputs(self) -> Inputs {
-        if self.collision.is_some() {
-            return Inputs::SAMPLING;
-        }
-        let along = match self.camera {
-            CameraTracking::Exact => Inputs::NONE,
-            CameraTracking::Ratio => Inputs::BOTH,
-            CameraTracking::Delta => Inputs::SAMPLING,
-        };
-        Inputs { control: along.control || self.main, ..along }
-    }
-
     fn domain(self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         match (self.main, self.light) {
             (true, true) => main_part::require_straight(setup)?,

@@ -4,7 +4,7 @@
 //! until [`TOGETHER`] lanes of its pack have. Scores of lanes that have found light are delayed likewise. A lane
 //! takes no random numbers in the meantime.
 
-use super::ground::RaySetup;
+use super::ray_setup::RaySetup;
 use crate::space::shadow::{Light, Shadows};
 use crate::walks::TentativeCollision;
 use crate::{Refusal, Setup};

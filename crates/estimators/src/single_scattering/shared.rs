@@ -7,7 +7,7 @@
 //!          at an interaction  T̂ ← T̂ (1 − r)
 //! ```
 
-use super::ground::RaySetup;
+use super::ray_setup::RaySetup;
 use super::shadow::ToLight;
 use super::vertices::{Right, WalkEvents};
 use crate::walks::{Route, TentativeCollision, Walk};

@@ -16,9 +16,9 @@
 //! | collisions | `S/c T̂_shadow` |
 //! | both | `q S/c T̂_shadow/(p_i/w_i)`, `q = c σ_t x` |
 
-use super::ground::RaySetup;
 use super::main_part::MainPart;
-use super::plan::{Absorption, Vertices};
+use super::points::{Absorption, Vertices};
+use super::ray_setup::RaySetup;
 use super::shadow::{TOGETHER, ToLight};
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::Batches;

@@ -20,7 +20,7 @@ pub enum Splitting {
 }
 
 impl Splitting {
-    /// Returns true if a collision splits, after `depth` splits on the way from the start and `total` in the walk
+    /// Returns whether a collision splits, after `depth` splits on the way from the start and `total` in the walk
     /// as a whole.
     pub fn splits(self, depth: u32, total: u32) -> bool {
         match self {

@@ -368,7 +368,7 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
         L::select(found.below(found.each(2.0)), by_walk, found.each(says(connected)))
     }
 
-    /// Returns true if a property holds for one of the techniques.
+    /// Returns whether a property holds for one of the techniques.
     #[inline(always)]
     fn has(&self, says: impl Fn(&Weighing) -> bool) -> bool {
         let [unscattered, hit, connected] = &self.weighings;

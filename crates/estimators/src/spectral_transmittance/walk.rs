@@ -108,7 +108,7 @@ impl<'a, S: WalkEvents> AlongRay<'a, S> {
         one.each(self.support.from)
     }
 
-    /// Returns true if a walk scores its hero alone.
+    /// Returns whether a walk scores its hero alone.
     #[inline(always)]
     fn is_alone(&self) -> bool {
         matches!(self.tracker, Tracker::Independent { .. } | Tracker::InTurn { .. })

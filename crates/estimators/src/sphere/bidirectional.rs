@@ -35,7 +35,7 @@
 //! Transactions on Graphics 38 (2019), section 5.5, Eqs. 43 and 44. Densities are derived in
 //! `estimators/sphere/combined.rs`, the bound in `theory/sphere/spread.rs`.
 
-use super::page::{BIDIRECTIONAL, Connected, Method};
+use super::page::{Connected, Connecting, Method};
 use super::sharing::{SharedTechniques, Subpaths};
 use crate::setup::heuristic;
 use crate::space::Particle;
@@ -44,16 +44,21 @@ use theory::ParticleRule;
 use theory::space::sphere::Techniques;
 
 /// Three techniques.
-pub type Bidirectional = Connected<BIDIRECTIONAL>;
+pub type Bidirectional = Connected<OfSubpaths>;
 
-/// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Method> {
-    let heuristic = heuristic::read(settings);
-    let words = ["independent", "shared"];
-    let subpaths = settings
-        .word_or("subpaths", &words, words[0])
-        .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
-    let techniques = Techniques::Bidirectional(heuristic?);
-    let sharing = SharedTechniques { techniques, shadow: None, subpaths };
-    subpaths.map(|_| Method { particle: Particle::of(ParticleRule::Analog), sharing })
+/// The settings of the page.
+#[derive(Debug, Clone)]
+pub struct OfSubpaths;
+
+impl Connecting for OfSubpaths {
+    fn read(settings: &Settings) -> Option<Method> {
+        let heuristic = heuristic::read(settings);
+        let words = ["independent", "shared"];
+        let subpaths = settings
+            .word_or("subpaths", &words, words[0])
+            .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
+        let techniques = Techniques::Bidirectional(heuristic?);
+        let sharing = SharedTechniques { techniques, shadow: None, subpaths };
+        subpaths.map(|_| Method { particle: Particle::of(ParticleRule::Analog), sharing })
+    }
 }

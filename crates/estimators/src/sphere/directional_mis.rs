@@ -26,7 +26,7 @@
 //! Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997). The bound is derived in
 //! `theory/sphere/spread.rs`.
 
-use super::page::{Connected, DIRECTIONAL, Method};
+use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;
 use crate::setup::heuristic;
 use crate::space::Particle;
@@ -36,14 +36,19 @@ use theory::light::Densities;
 use theory::space::sphere::Techniques;
 
 /// Multiple importance sampling over directions.
-pub type DirectionalMis = Connected<DIRECTIONAL>;
+pub type DirectionalMis = Connected<OfDirections>;
 
-/// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Method> {
-    let particle = Particle::read(settings);
-    let shadow = connection::read_shadow(settings);
-    let heuristic = heuristic::read(settings);
-    let techniques = Techniques::Mis(Densities::Directional, heuristic?);
-    let sharing = SharedTechniques { techniques, shadow: Some(shadow?), subpaths: None };
-    Some(Method { particle: particle?, sharing })
+/// The settings of the page.
+#[derive(Debug, Clone)]
+pub struct OfDirections;
+
+impl Connecting for OfDirections {
+    fn read(settings: &Settings) -> Option<Method> {
+        let particle = Particle::read(settings);
+        let shadow = connection::read_shadow(settings);
+        let heuristic = heuristic::read(settings);
+        let techniques = Techniques::Mis(Densities::Directional, heuristic?);
+        let sharing = SharedTechniques { techniques, shadow: Some(shadow?), subpaths: None };
+        Some(Method { particle: particle?, sharing })
+    }
 }

@@ -26,7 +26,7 @@
 //! Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42. The bound is derived in
 //! `theory/sphere/spread.rs`.
 
-use super::page::{Connected, FULL, Method};
+use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;
 use crate::setup::heuristic;
 use crate::space::Particle;
@@ -36,15 +36,20 @@ use theory::single::Tracking;
 use theory::space::sphere::Techniques;
 
 /// Multiple importance sampling over null-scattering paths.
-pub type FullMis = Connected<FULL>;
+pub type FullMis = Connected<OfPaths>;
 
-/// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Method> {
-    let particle = Particle::read(settings);
-    let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
-    let heuristic = heuristic::read(settings);
-    let shadow = (shadow? == "exact").then_some(Tracking::Exact);
-    let techniques = Techniques::Mis(Densities::Full, heuristic?);
-    let sharing = SharedTechniques { techniques, shadow, subpaths: None };
-    Some(Method { particle: particle?, sharing })
+/// The settings of the page.
+#[derive(Debug, Clone)]
+pub struct OfPaths;
+
+impl Connecting for OfPaths {
+    fn read(settings: &Settings) -> Option<Method> {
+        let particle = Particle::read(settings);
+        let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
+        let heuristic = heuristic::read(settings);
+        let shadow = (shadow? == "exact").then_some(Tracking::Exact);
+        let techniques = Techniques::Mis(Densities::Full, heuristic?);
+        let sharing = SharedTechniques { techniques, shadow, subpaths: None };
+        Some(Method { particle: particle?, sharing })
+    }
 }

@@ -24,7 +24,7 @@
 //! *Residual ratio tracking for estimating attenuation in participating media*, ACM Transactions on
 //! Graphics 33 (2014). The bound is derived in `theory/sphere/spread.rs`.
 
-use super::page::{Connected, Method, NEXT_EVENT};
+use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;
 use crate::space::Particle;
 use crate::space::connection;
@@ -32,12 +32,18 @@ use media::catalogue::Settings;
 use theory::space::sphere::Techniques;
 
 /// A walk with shadow rays.
-pub type NextEvent = Connected<NEXT_EVENT>;
+pub type NextEvent = Connected<OfNextEvent>;
 
-/// Reads the settings.
-pub(super) fn page(settings: &Settings) -> Option<Method> {
-    let particle = Particle::read(settings);
-    let shadow = Some(connection::read_shadow(settings)?);
-    let sharing = SharedTechniques { techniques: Techniques::NextEvent, shadow, subpaths: None };
-    Some(Method { particle: particle?, sharing })
+/// The settings of the page.
+#[derive(Debug, Clone)]
+pub struct OfNextEvent;
+
+impl Connecting for OfNextEvent {
+    fn read(settings: &Settings) -> Option<Method> {
+        let particle = Particle::read(settings);
+        let shadow = Some(connection::read_shadow(settings)?);
+        let sharing =
+            SharedTechniques { techniques: Techniques::NextEvent, shadow, subpaths: None };
+        Some(Method { particle: particle?, sharing })
+    }
 }

@@ -1,10 +1,12 @@
 //! Estimators with shadow rays: their settings, predictions and draws.
 
+use std::marker::PhantomData;
+
 use fearless_simd::Level;
 
 use super::combined::Combined;
 use super::sharing::{Correct, SharedTechniques, Subpaths, WalkEvents};
-use super::{bidirectional, connected, directional_mis, full_mis, next_event, realisable};
+use super::{connected, realisable};
 use crate::space::connection;
 use crate::space::{Particle, Splitting, draws};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
@@ -73,30 +75,21 @@ impl Method {
     }
 }
 
-/// Kind of [`next_event`].
-pub const NEXT_EVENT: u8 = 0;
-/// Kind of [`directional_mis`].
-pub const DIRECTIONAL: u8 = 1;
-/// Kind of [`full_mis`].
-pub const FULL: u8 = 2;
-/// Kind of [`bidirectional`].
-pub const BIDIRECTIONAL: u8 = 3;
+/// Settings of a page.
+pub trait Connecting: Clone + Send + Sync + 'static {
+    /// Reads the settings.
+    fn read(settings: &Settings) -> Option<Method>;
+}
 
-/// An estimator with shadow rays, of a kind.
+/// An estimator with shadow rays, of a page.
 #[derive(Debug, Clone)]
-pub struct Connected<const KIND: u8>(Method);
+pub struct Connected<P>(Method, PhantomData<P>);
 
-impl<const KIND: u8> Estimator<Sphere> for Connected<KIND> {
+impl<P: Connecting> Estimator<Sphere> for Connected<P> {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {
-        let page = match KIND {
-            NEXT_EVENT => next_event::page(settings),
-            DIRECTIONAL => directional_mis::page(settings),
-            FULL => full_mis::page(settings),
-            _ => bidirectional::page(settings),
-        };
-        page.map(Self)
+        P::read(settings).map(|method| Self(method, PhantomData))
     }
 
     /// The settings are words such as `analog, ratio shadow, power`.

@@ -20,6 +20,7 @@
 
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
+use theory::collisions::Collisions;
 use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
 use theory::ray::atoms;
@@ -53,7 +54,8 @@ impl Estimator<Transmittance> for DoubleParticle {
     const PLAIN: Option<Self> = Some(Self);
 
     fn traits(&self) -> Traits {
-        Traits { without_control: Some("ratio"), ..Traits::product(Self::INPUTS) }
+        let (without_control, collisions) = (Some("ratio"), Some(Collisions::Weight));
+        Traits { without_control, collisions, ..Traits::product(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -20,6 +20,7 @@
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
+use theory::collisions::Collisions;
 use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
 
@@ -32,7 +33,7 @@ impl Estimator<Transmittance> for Ratio {
     const PLAIN: Option<Self> = Some(Self);
 
     fn traits(&self) -> Traits {
-        Traits::product(Self::INPUTS)
+        Traits { collisions: Some(Collisions::Weight), ..Traits::product(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -23,6 +23,7 @@ use crate::recipes::controls;
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use media::Control;
 use theory::Prediction;
+use theory::collisions::Collisions;
 use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
 
@@ -38,6 +39,7 @@ impl Estimator<Transmittance> for ResidualRatio {
         Traits {
             without_control: Some("ratio"),
             default_control: Some(Box::new(controls::mean::Mean)),
+            collisions: Some(Collisions::Weight),
             ..Traits::product(Self::INPUTS)
         }
     }

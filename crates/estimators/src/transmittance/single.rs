@@ -32,6 +32,7 @@
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use media::catalogue::{Domain, Settings};
 use theory::Prediction;
+use theory::collisions::Collisions;
 use theory::collisions::rules::Single;
 use theory::problems::Transmittance;
 
@@ -77,7 +78,8 @@ impl Estimator<Transmittance> for SingleParticle {
             Single::NonTerminating { albedo } => ("non-terminating", Some(albedo)),
             Single::Adaptive { albedo } => ("adaptive", Some(albedo)),
         };
-        Traits { settings: rule.into(), albedo, ..Traits::product(Self::INPUTS) }
+        let collisions = Some(Collisions::Single(self.rule));
+        Traits { settings: rule.into(), albedo, collisions, ..Traits::product(Self::INPUTS) }
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {

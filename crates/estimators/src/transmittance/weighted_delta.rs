@@ -17,6 +17,7 @@
 
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;
+use theory::collisions::Collisions;
 use theory::collisions::rules::Single;
 use theory::problems::Transmittance;
 
@@ -31,7 +32,8 @@ impl Estimator<Transmittance> for WeightedDelta {
     const PLAIN: Option<Self> = Some(Self);
 
     fn traits(&self) -> Traits {
-        Traits::product(Self::INPUTS)
+        let collisions = Some(Collisions::Single(RULE));
+        Traits { collisions, ..Traits::product(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -17,7 +17,7 @@ use theory::problems::Channels;
 /// by more than eight lookups at once gain, unless lookups are costly or σ̂ is constant.
 const MAX_PIECES: usize = 8;
 
-/// Returns true if packs are faster than one walk after the other.
+/// Returns whether packs are faster than one walk after the other.
 fn packets_are_faster<W: Walk>(sampling: &Piecewise, control: &Control, medium: &Lookups) -> bool {
     if !W::IN_PIECES && sampling.with_gaps().is_none() {
         return false;

@@ -41,7 +41,7 @@ impl Slots {
         Self { next, began: [0; WIDTH], now: 0, open, count }
     }
 
-    /// Returns true if a lane has draws left.
+    /// Returns whether a lane has draws left.
     #[inline(always)]
     pub fn are_open(&self) -> bool {
         self.open > 0

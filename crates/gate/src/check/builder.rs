@@ -1,12 +1,9 @@
 //! A check while it is built: the source of the draws, and the properties that correct draws have.
 
-use super::made::{Closure, Factory, Sample};
-use super::outcome::{CheckError, CheckFault};
+use super::outcome::{CheckError, CheckFault, MAX_VALUES};
+use super::sample::{Closure, Factory, Sample};
 use crate::session::{Claim, Lookups, Options, ROUNDING, Session, Theory, TheoryClaims};
 use numeric::rng::Stream;
-
-/// Maximum number of values of a draw that are judged together: with more, the share of α of each is too small.
-pub const MAX_VALUES: usize = 1 << 16;
 
 /// Maximum number of draws, unless [`Check::draws`] sets it.
 pub const MAX_DRAWS: u64 = 1 << 24;
@@ -269,7 +266,7 @@ impl Said {
         self.mean_only || self.wanted.batch > 1
     }
 
-    /// Returns true if theory has a claim on lookups.
+    /// Returns whether theory has a claim on lookups.
     pub(super) fn knows_lookups(&self) -> bool {
         let first = self.known().and_then(|theory| theory.channels.first());
         !self.is_mean_only() && first.is_some_and(|(_, claim)| claim.lookups.is_some())
@@ -290,7 +287,7 @@ impl Said {
         Some(TheoryClaims { theory, has_lookups, is_mean_only: self.mean_only })
     }
 
-    /// Returns true if a pushed draw comes with its lookups.
+    /// Returns whether a pushed draw comes with its lookups.
     pub(super) fn has_lookups(&self) -> bool {
         self.lookups.is_some()
     }

@@ -23,12 +23,13 @@ mod made;
 mod outcome;
 mod property;
 mod pushed;
+mod sample;
 
-pub use builder::{Check, MAX_DRAWS, MAX_VALUES, Values, check, check_with, claim};
-pub use made::{Closure, Factory, Sample};
-pub use outcome::{CheckError, CheckFault, Outcome};
+pub use builder::{Check, MAX_DRAWS, Values, check, check_with, claim};
+pub use outcome::{CheckError, CheckFault, MAX_VALUES, Outcome};
 pub use property::Property;
 pub use pushed::{Pushed, Request};
+pub use sample::{Closure, Factory, Sample};
 
 pub use crate::session::{Block, Source, Stop, Until};
 

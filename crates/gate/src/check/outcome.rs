@@ -3,10 +3,12 @@
 use std::error::Error;
 use std::fmt;
 
-use super::builder::MAX_VALUES;
 use crate::session::{ClaimError, Judgement};
 use crate::stats::verdict::Verdict;
 use numeric::digits::number;
+
+/// Maximum number of values of a draw that are judged together: with more, the share of α of each is too small.
+pub const MAX_VALUES: usize = 1 << 16;
 
 /// Maximum number of values that are displayed.
 const TOLD: usize = 8;
@@ -38,7 +40,7 @@ impl Outcome {
         Verdict::worst(self.values.iter().map(|value| value.verdict))
     }
 
-    /// Returns true if all values pass.
+    /// Returns whether all values pass.
     pub fn passed(&self) -> bool {
         self.verdict() == Verdict::Pass
     }
@@ -281,4 +283,13 @@ impl fmt::Display for CheckFault {
 /// A number of things in words.
 fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Panics unless a check passes.
+#[track_caller]
+pub(super) fn assert_pass(outcome: &Result<Outcome, CheckError>) {
+    match outcome {
+        Ok(outcome) => outcome.assert_pass(),
+        Err(error) => panic!("{error}"),
+    }
 }

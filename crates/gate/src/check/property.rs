@@ -1,7 +1,7 @@
 //! Properties of a check by name, for interfaces in other languages.
 
-use super::builder::{Check, MAX_VALUES};
-use super::outcome::{CheckError, CheckFault};
+use super::builder::Check;
+use super::outcome::{CheckError, CheckFault, MAX_VALUES};
 
 /// Property of a check that is set by numbers, as the method of the same name does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! Draws that other code makes and pushes.
 
 use super::builder::{Check, MAX_DRAWS};
-use super::made::assert_pass;
-use super::outcome::{CheckError, CheckFault, Outcome};
+use super::outcome::{CheckError, CheckFault, Outcome, assert_pass};
 use crate::session::{BUFFER, Block, Session, Sink, Stop, Until, drive, room};
 use numeric::rng::{Address, Stream, name_hash};
 
@@ -217,7 +216,7 @@ impl Pushed {
         self.push(draws, lookups)
     }
 
-    /// Returns true if more draws may change the verdict: before the announced number of draws, and until all is
+    /// Returns whether more draws may change the verdict: before the announced number of draws, and until all is
     /// decided.
     pub fn is_open(&self) -> bool {
         self.session.is_open()

@@ -54,7 +54,7 @@ pub struct Lookups {
 }
 
 impl Lookups {
-    /// Returns true if every draw takes the same number.
+    /// Returns whether every draw takes the same number.
     pub fn is_fixed(&self) -> bool {
         self.variance == Some(0.0)
     }
@@ -350,12 +350,12 @@ impl CheckedClaim {
         self.claim.variance.map(|variance| variance.sqrt() / self.claim.unit)
     }
 
-    /// Returns true if the claimed variance of the draws is 0, to rounding.
+    /// Returns whether the claimed variance of the draws is 0, to rounding.
     pub(super) fn is_certain(&self) -> bool {
         self.deviation().is_some_and(|deviation| FURTHEST * deviation <= self.claim.floor())
     }
 
-    /// Returns true if rounding hides the variance: it cannot be tested even to its largest tolerance.
+    /// Returns whether rounding hides the variance: it cannot be tested even to its largest tolerance.
     pub(super) fn is_faint(&self) -> bool {
         let variance = self.claim.variance.filter(|&variance| variance > 0.0);
         variance.is_some_and(|v| self.claim.variance_floor(v) > 0.25 * VARIANCE_CAP)

@@ -109,7 +109,7 @@ impl OfVariance {
         if matches!(self.ground, VarianceBound::Variance(_)) { 0.0 } else { (1.0 - PILOT).ln() }
     }
 
-    /// Returns true if all draws together contradict the assumption about their variance.
+    /// Returns whether all draws together contradict the assumption about their variance.
     pub(super) fn is_contradicted(&self, all: &Powers) -> bool {
         let assumed = self.kurtosis.unwrap_or(f64::INFINITY);
         self.ground == VarianceBound::Shown

@@ -179,7 +179,7 @@ pub struct IndependenceFinding {
 }
 
 impl IndependenceFinding {
-    /// Returns true if a dependence was found.
+    /// Returns whether a dependence was found.
     pub fn is_refuted(&self) -> bool {
         self.reason.is_some()
     }
@@ -214,7 +214,7 @@ impl Judgement {
         pattern
     }
 
-    /// Returns true if mean and variance are those of draws of 0 and 1 only: `E[X²] = E[X]` up to rounding.
+    /// Returns whether mean and variance are those of draws of 0 and 1 only: `E[X²] = E[X]` up to rounding.
     fn has_binary_moments(&self) -> bool {
         let (Some(mean), Some(variance)) = (self.mean, self.variance) else { return false };
         let share = 1.0 - 1.0 / self.draws.max(1) as f64;

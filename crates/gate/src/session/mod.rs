@@ -165,7 +165,7 @@ impl Sink for Session {
         self.readings.first().map_or(0, Reading::draws) + self.pending.draws() as u64
     }
 
-    /// Returns true if more draws may change the verdict.
+    /// Returns whether more draws may change the verdict.
     fn is_open(&self) -> bool {
         self.readings.iter().any(Reading::is_open)
     }
@@ -278,7 +278,7 @@ pub trait Sink {
     /// Number of draws so far.
     fn draws(&self) -> u64;
 
-    /// Returns true if more draws may change the verdict.
+    /// Returns whether more draws may change the verdict.
     fn is_open(&self) -> bool;
 }
 

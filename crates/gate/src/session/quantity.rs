@@ -114,7 +114,7 @@ impl Quantity {
         Self { expected, scale, ..self }
     }
 
-    /// Returns true if its ground lets it fail, and not only pass.
+    /// Returns whether its ground lets it fail, and not only pass.
     pub fn is_hard(&self) -> bool {
         self.ground != Some(VarianceBound::Shown)
     }

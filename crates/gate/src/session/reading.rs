@@ -298,7 +298,7 @@ impl Reading {
         }
     }
 
-    /// Returns true if more draws may change the verdict.
+    /// Returns whether more draws may change the verdict.
     pub(super) fn is_open(&self) -> bool {
         if self.refuted.is_some() {
             return false;
@@ -377,7 +377,7 @@ impl Reading {
     }
 }
 
-/// Returns true if a condition holds for all numbers. The loop has no branches, so that it is compiled for wide registers.
+/// Returns whether a condition holds for all numbers. The loop has no branches, so that it is compiled for wide registers.
 fn are_all(values: &[f64], is_sound: impl Fn(f64) -> bool) -> bool {
     struct Unsound<'a, F> {
         values: &'a [f64],

@@ -226,7 +226,7 @@ impl Scalar {
         }
     }
 
-    /// Returns true if more draws may change the decision, which is then final.
+    /// Returns whether more draws may change the decision, which is then final.
     pub(super) fn is_open(&self) -> bool {
         let most = self.planned.unwrap_or(UNPLANNED);
         let limit = match &self.design {
@@ -240,18 +240,18 @@ impl Scalar {
         self.decision == Decision::Failed
     }
 
-    /// Returns true if it can fail at all.
+    /// Returns whether it can fail at all.
     pub(super) fn has_ground(&self) -> bool {
         self.of_range.is_some() || self.quantity.is_hard()
     }
 
-    /// Returns true if the draws do not contradict the assumptions about them.
+    /// Returns whether the draws do not contradict the assumptions about them.
     pub(super) fn is_founded(&self) -> bool {
         let ground = self.of_variance.as_ref();
         !ground.is_some_and(|ground| ground.is_contradicted(&self.past)) || self.of_range.is_some()
     }
 
-    /// Returns true if the mean would also fail with the variance that the draws show.
+    /// Returns whether the mean would also fail with the variance that the draws show.
     pub(super) fn is_off_by_itself(&self) -> bool {
         let (off, n) = self.seen;
         let by_range = self.of_range.as_ref().map_or(0.0, |ground| ground.capital.ln_e());

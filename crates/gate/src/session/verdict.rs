@@ -53,14 +53,14 @@ impl Reasons {
     }
 }
 
-/// Returns true if a failing mean relies on a variance that is refuted as too small: with the variance that the
+/// Returns whether a failing mean relies on a variance that is refuted as too small: with the variance that the
 /// draws show it would not fail.
 pub fn rests_on(mean: &GateFinding, variance: &GateFinding, ln_fail: f64) -> bool {
     let spread = mean.variance * (1.0 + variance.mean) - mean.mean * mean.mean;
     variance.mean > 0.0 && !gate::is_off_by_itself(mean.mean, spread, mean.draws as f64, ln_fail)
 }
 
-/// Returns true if squares about many truths at once, such as those of all pixels, are too large because of their
+/// Returns whether squares about many truths at once, such as those of all pixels, are too large because of their
 /// variance. The relative excess about the means of the draws is then at least half of that about the truths.
 /// Biased means enlarge the latter alone.
 pub fn is_by_spread(about_truth: f64, about_mean: f64) -> bool {

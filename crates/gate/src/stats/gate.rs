@@ -99,7 +99,7 @@ pub fn ln_fail(alpha: f64, count: usize) -> f64 {
     -(alpha / count.max(1) as f64).ln()
 }
 
-/// Returns true if a scalar also fails with its own variance `spread` in place of V: evidence that relies on a
+/// Returns whether a scalar also fails with its own variance `spread` in place of V: evidence that relies on a
 /// variance that is refuted as too small does not count.
 pub fn is_off_by_itself(mean: f64, spread: f64, draws: f64, ln_fail: f64) -> bool {
     0.5 * mean * mean * draws >= ln_fail * spread

@@ -41,7 +41,7 @@ pub fn p_value(ties: usize, expected: f64) -> f64 {
     super::chi_square::lower(2.0 * expected, 2.0 * ties as f64)
 }
 
-/// Returns true if every finite value is a single-precision number; false without finite values.
+/// Returns whether every finite value is a single-precision number; false without finite values.
 #[allow(clippy::cast_possible_truncation)] // what the truncation loses is the question
 pub fn all_single_precision(values: &[f64]) -> bool {
     let mut finite = values.iter().filter(|x| x.is_finite()).peekable();

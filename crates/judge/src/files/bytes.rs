@@ -56,7 +56,7 @@ fn swapped(
 /// Minimum number of words of 8 bytes that show whether they are pairs of words of 4 bytes.
 const MIN_WORDS: usize = 64;
 
-/// Returns true if bytes look like float32.
+/// Returns whether bytes look like float32.
 ///
 /// The low half of a float64 holds the last bits of its mantissa. Read as float32 these have any exponent, or are
 /// 0 and few other values if the number has few bits. Halves of usual size, many different ones or 1 among them,

@@ -105,7 +105,7 @@ pub fn stack_in(paths: &[impl AsRef<Path>], frame: Frame) -> Result<Stack, Image
     Ok(Stack { rounding, ..Stack::new(paths.len(), size, values)? })
 }
 
-/// Returns true if files of a format may be images.
+/// Returns whether files of a format may be images.
 pub fn is_image(format: Format) -> bool {
     matches!(format, Format::Npy | Format::Pfm | Format::Exr)
 }

@@ -9,7 +9,8 @@
 
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::bidirectional_rod::Method;
-use estimators::bidirectional_rod::walk::{self, Path, WalkEvents};
+use estimators::bidirectional_rod::path::Path;
+use estimators::bidirectional_rod::walk::{self, WalkEvents};
 use gate::CheckId;
 use numeric::Lane;
 use theory::light::Heuristic;

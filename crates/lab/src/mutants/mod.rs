@@ -90,7 +90,7 @@ pub struct Caught {
 }
 
 impl Caught {
-    /// Returns true if the bug was caught and its control passed.
+    /// Returns whether the bug was caught and its control passed.
     pub fn is_right(&self) -> bool {
         self.draws.is_some() && self.twin_passes
     }

@@ -91,7 +91,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Returns true if no promise is refuted.
+    /// Returns whether no promise is refuted.
     pub fn holds(&self) -> bool {
         let shares = self.uniformity.iter().flat_map(|check| &check.below);
         let are_uniform =

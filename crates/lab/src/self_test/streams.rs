@@ -232,7 +232,7 @@ impl Law {
 }
 
 impl StreamVerdicts {
-    /// Returns true if the counts do not refute that a correct stream fails with probability at most α.
+    /// Returns whether the counts do not refute that a correct stream fails with probability at most α.
     pub fn is_kept(&self) -> bool {
         binomial::interval(self.failed, self.streams, CERTAIN).0 <= ALPHA
     }

@@ -109,7 +109,7 @@ pub struct Stress {
 }
 
 impl Stress {
-    /// Returns true if every bound holds.
+    /// Returns whether every bound holds.
     pub fn holds(&self) -> bool {
         self.rows.iter().all(Row::holds)
     }

@@ -86,12 +86,12 @@ impl Ordinates {
         Some(Self { depth, cosines, weights, swing, parts })
     }
 
-    /// Returns true if the albedo exceeds 1: one solution oscillates in depth.
+    /// Returns whether the albedo exceeds 1: one solution oscillates in depth.
     pub fn swings(&self) -> bool {
         self.swing.is_some()
     }
 
-    /// Returns true if J is positive everywhere. If the albedo exceeds 1 it may not be, unless the slab is thin.
+    /// Returns whether J is positive everywhere. If the albedo exceeds 1 it may not be, unless the slab is thin.
     pub fn is_positive(&self) -> bool {
         const PLACES: u32 = 64;
         (0..=PLACES).all(|i| {

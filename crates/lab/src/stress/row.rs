@@ -137,17 +137,17 @@ impl Row {
         self.trials += trials;
     }
 
-    /// Returns true if the worst error is within the bound; NaN is not.
+    /// Returns whether the worst error is within the bound; NaN is not.
     pub fn is_within(&self) -> bool {
         self.worst <= self.bound
     }
 
-    /// Returns true if the bound holds. A row without trials does not hold, nor one that was mostly skipped.
+    /// Returns whether the bound holds. A row without trials does not hold, nor one that was mostly skipped.
     pub fn holds(&self) -> bool {
         self.trials > 0 && !self.is_mostly_skipped() && self.is_within()
     }
 
-    /// Returns true if more trials were skipped than compared: such a row does not test its range.
+    /// Returns whether more trials were skipped than compared: such a row does not test its range.
     pub fn is_mostly_skipped(&self) -> bool {
         self.skipped > self.trials
     }

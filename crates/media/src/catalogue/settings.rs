@@ -64,7 +64,7 @@ impl<'a> Settings<'a> {
         self.table
     }
 
-    /// Returns true if the file has the key.
+    /// Returns whether the file has the key.
     pub fn has(&self, key: &'static str) -> bool {
         self.entry(key).is_some()
     }
@@ -79,7 +79,7 @@ impl<'a> Settings<'a> {
         if self.has(key) { read(key).map(Some) } else { Some(None) }
     }
 
-    /// Returns true if the table has no keys.
+    /// Returns whether the table has no keys.
     pub fn is_empty(&self) -> bool {
         self.table.is_empty()
     }

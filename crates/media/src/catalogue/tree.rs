@@ -101,7 +101,7 @@ pub enum Domain {
 }
 
 impl Domain {
-    /// Returns true if the number is in the domain.
+    /// Returns whether the number is in the domain.
     pub fn contains(self, x: f64) -> bool {
         x.is_finite()
             && match self {

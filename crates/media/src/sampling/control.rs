@@ -75,7 +75,7 @@ impl Control {
         }
     }
 
-    /// Returns true if there is no control.
+    /// Returns whether there is no control.
     pub fn is_none(&self) -> bool {
         matches!(self, Self::None)
     }

@@ -143,7 +143,7 @@ impl Piecewise {
         self.left.len()
     }
 
-    /// Returns true if no piece has a slope.
+    /// Returns whether no piece has a slope.
     pub fn is_steps(&self) -> bool {
         self.slope.iter().all(|&slope| slope == 0.0)
     }

@@ -141,7 +141,7 @@ impl Bounds {
     }
 }
 
-/// Returns true if plain doubles find the ends of a chord to 64 roundings of the radius: the origin is near
+/// Returns whether plain doubles find the ends of a chord to 64 roundings of the radius: the origin is near
 /// and the ray does not graze.
 fn is_plain(centre: Point, radius: f64, ray: &Ray, offset: f64) -> bool {
     offset < 0.9 * radius && (centre - ray.origin).norm() < 4.0 * radius && radius > 1e-100

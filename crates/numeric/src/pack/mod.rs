@@ -61,7 +61,7 @@ pub trait PackedWords: xoshiro::Words<Numbers: Lane<Mask = Self::Mask>> {
     fn store(self, row: &mut [u64; WIDTH]);
 }
 
-/// Returns true if a level has packs.
+/// Returns whether a level has packs.
 #[inline(always)]
 pub fn has_packs(level: Level) -> bool {
     #[cfg(target_arch = "x86_64")]

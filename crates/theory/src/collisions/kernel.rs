@@ -32,7 +32,7 @@ impl<S: Scalar> Kernel<S> {
         S::from(1.0) - self.straight
     }
 
-    /// Returns true if the moment along a flight without end is infinite, as collisions take nothing and scatter.
+    /// Returns whether the moment along a flight without end is infinite, as collisions take nothing and scatter.
     pub fn is_endless(&self) -> bool {
         self.lost().leading() <= 0.0 && self.scattered.leading() > 0.0
     }

@@ -35,3 +35,23 @@ pub trait Rule: Send + Sync {
     /// The ratios at which [`Rule::outcome`] or one of its derivatives jumps: panels end there.
     fn kinks(&self) -> Vec<f64>;
 }
+
+/// Rule of an estimator that multiplies a factor at every collision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Collisions {
+    /// A weight at every collision: ratio tracking and the double particle. The losses `J_k = ∫ ρ^k/σ̂^{k−1}` at one σ̂, ρ the
+    /// residual, give those at all multiples of it.
+    Weight,
+    /// The single particle.
+    Single(rules::Single),
+}
+
+impl Collisions {
+    /// Returns the rule.
+    pub fn rule(&self) -> &dyn Rule {
+        match self {
+            Self::Weight => &rules::Weight,
+            Self::Single(rule) => rule,
+        }
+    }
+}

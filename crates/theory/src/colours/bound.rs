@@ -185,7 +185,7 @@ pub fn of_walks(
     Ok(bounds)
 }
 
-/// Returns true if directions after a scattering are isotropic in all channels.
+/// Returns whether directions after a scattering are isotropic in all channels.
 pub fn are_isotropic(phases: &[Phase]) -> bool {
     phases.iter().all(|phase| *phase == Phase::Isotropic(Isotropic))
 }

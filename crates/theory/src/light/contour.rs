@@ -115,7 +115,7 @@ impl Contour {
         Self { highest, count, unit, lines }
     }
 
-    /// Returns true if complex powers of x are needed.
+    /// Returns whether complex powers of x are needed.
     pub fn has_lines(&self) -> bool {
         !self.lines.is_empty()
     }

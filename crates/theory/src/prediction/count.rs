@@ -36,7 +36,7 @@ impl CountDistribution {
     /// Relative error of a predicted mean number, unless its own `error` is larger.
     pub const ERROR: f64 = 1e-10;
 
-    /// Returns true if the mean is known to 1e-4, as well as the answers of slabs and balls that draws are compared with.
+    /// Returns whether the mean is known to 1e-4, as well as the answers of slabs and balls that draws are compared with.
     pub fn is_sharp(&self) -> bool {
         self.error <= 1e-4
     }

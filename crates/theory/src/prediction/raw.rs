@@ -113,7 +113,7 @@ impl RawMoments {
         Self(std::array::from_fn(widened))
     }
 
-    /// Returns true if the draw is its mean with no rounding at all.
+    /// Returns whether the draw is its mean with no rounding at all.
     pub fn is_certain(&self, mean: f64) -> bool {
         [1, 2, 3].into_iter().all(|i| self.0[i].value == mean.powi(POWERS[i]))
     }

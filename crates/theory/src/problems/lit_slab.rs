@@ -29,7 +29,7 @@ pub enum Light {
 }
 
 impl Light {
-    /// Returns true if a direction that is chosen by the phase function may meet it.
+    /// Returns whether a direction that is chosen by the phase function may meet it.
     pub fn can_be_hit(self) -> bool {
         matches!(self, Self::Cap(_) | Self::Disc { .. })
     }
@@ -78,7 +78,7 @@ impl Light {
         }
     }
 
-    /// Returns true if a direction meets it.
+    /// Returns whether a direction meets it.
     #[inline(always)]
     pub fn is_met<L: Lane>(self, cosine: L, before: L) -> L::Mask {
         let zero = cosine.each(0.0);

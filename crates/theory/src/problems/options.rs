@@ -40,7 +40,7 @@ impl ProblemOption {
         }
     }
 
-    /// Returns true if the settings of a problem have the option.
+    /// Returns whether the settings of a problem have the option.
     pub fn is_given(self, settings: &Settings) -> bool {
         let is_list = |key| {
             let entry = settings.entry(key);
@@ -53,7 +53,7 @@ impl ProblemOption {
     }
 }
 
-/// Returns true if a list of media is among some options.
+/// Returns whether a list of media is among some options.
 pub(super) const fn has_media(options: &[ProblemOption]) -> bool {
     let mut index = 0;
     while index < options.len() {

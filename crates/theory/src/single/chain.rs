@@ -58,7 +58,7 @@ impl<'a> Chain<'a> {
         Self { scene, panels: panels.iter().map(panel).collect() }
     }
 
-    /// Returns true if a weight changes its sign somewhere.
+    /// Returns whether a weight changes its sign somewhere.
     pub fn is_signed(&self) -> bool {
         let mut nodes = self.panels.iter().flat_map(|panel| &panel.nodes);
         nodes.any(|at| at.collision[0] > 0.0 && at.collision[1] < 0.0)

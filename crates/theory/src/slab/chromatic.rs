@@ -91,7 +91,7 @@ fn is_isotropic(incidence: &Incidence) -> bool {
     incidence.phase == Phase::Isotropic(Isotropic)
 }
 
-/// Returns true if a slab of an optical depth has a finite answer.
+/// Returns whether a slab of an optical depth has a finite answer.
 fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
     let light = Incidence { light: Light::Diffuse, ..*incidence };
     if is_isotropic(incidence) {

@@ -98,7 +98,7 @@ pub fn needed(phase: &Phase, faintest: f64) -> usize {
     (last / 2 + 1).min(MAX_DIRECTIONS)
 }
 
-/// Returns true if `count` directions, and no more than the maximum, resolve a phase function.
+/// Returns whether `count` directions, and no more than the maximum, resolve a phase function.
 pub fn are_enough(phase: &Phase, faintest: f64, count: usize) -> bool {
     phase.moment(2 * count.min(MAX_DIRECTIONS)).abs() < faintest
 }

@@ -138,7 +138,7 @@ impl Resolution {
         }
     }
 
-    /// Returns true if the peak of a phase function is cut off.
+    /// Returns whether the peak of a phase function is cut off.
     pub fn cuts(self, phase: &Phase) -> bool {
         self.of(phase).peaked > 0
     }
@@ -162,12 +162,12 @@ const BLURRED: f64 = 1e-4;
 /// The smallest exact answer: below, the fourth power of a draw's mean is no double of full length.
 pub const FAINT: f64 = 1e-70;
 
-/// Returns true if an answer is known well enough for a comparison with draws.
+/// Returns whether an answer is known well enough for a comparison with draws.
 pub fn is_sharp(known: Known) -> bool {
     known.value >= FAINT && known.error <= BLURRED * known.value
 }
 
-/// Returns true if answers of different resolutions give the error of an exact one: by more and more directions, or
+/// Returns whether answers of different resolutions give the error of an exact one: by more and more directions, or
 /// with a forward peak cut off. A backward peak is resolved for Henyey–Greenstein of g ≥ −0.935.
 pub fn resolves(phase: &Phase) -> bool {
     let Resolution { peaked, .. } = Resolution::FINE;

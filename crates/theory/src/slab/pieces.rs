@@ -56,7 +56,7 @@ impl Piece {
         })
     }
 
-    /// Returns true if every collision in it is null: then no particle changes.
+    /// Returns whether every collision in it is null: then no particle changes.
     pub(super) fn is_idle(&self, probabilities: impl Fn(f64) -> EventProbabilities) -> bool {
         self.ratios.iter().all(|&[_, ratio]| probabilities(ratio).transmit >= 1.0)
     }

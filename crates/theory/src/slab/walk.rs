@@ -147,12 +147,12 @@ impl Walk {
         Some(factor.unwrap_or(1.0))
     }
 
-    /// Returns true if null collisions keep the weight, and scatterings multiply it by one factor.
+    /// Returns whether null collisions keep the weight, and scatterings multiply it by one factor.
     fn is_tracking(&self) -> bool {
         self.scattering_factor().is_some()
     }
 
-    /// Returns true if draws are 0 or 1, since every collision keeps the weight or ends the walk.
+    /// Returns whether draws are 0 or 1, since every collision keeps the weight or ends the walk.
     fn is_bernoulli(&self) -> bool {
         self.scattering_factor().is_some_and(|factor| (factor - 1.0).abs() <= ROUNDING)
     }
@@ -231,7 +231,7 @@ impl Walk {
         }
     }
 
-    /// Returns true if the eighth moments are computed.
+    /// Returns whether the eighth moments are computed.
     fn has_tails(&self) -> bool {
         self.with_distributions && (matches!(self.pieces, Pieces::Exact(_)) || self.is_tracking())
     }
@@ -256,7 +256,7 @@ impl Walk {
         found.into_iter().zip(truths).map(both).collect()
     }
 
-    /// Returns true if draws lie in [0, 1], as all weights do.
+    /// Returns whether draws lie in [0, 1], as all weights do.
     fn is_share(&self) -> bool {
         let is_share = |ratio| {
             let probabilities = self.probabilities(ratio);

@@ -78,12 +78,12 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     }
 }
 
-/// Returns true if σ_t is a polynomial in cells along the axes.
+/// Returns whether σ_t is a polynomial in cells along the axes.
 fn has_cells(volume: &Volume) -> bool {
     matches!(volume.facts().smoothness, Smoothness::SmoothCells | Smoothness::Cells)
 }
 
-/// Returns true if σ_t jumps or bends.
+/// Returns whether σ_t jumps or bends.
 fn has_kinks(volume: &Volume) -> bool {
     volume.facts().smoothness != Smoothness::Smooth
 }

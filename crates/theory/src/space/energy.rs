@@ -79,12 +79,12 @@ impl Walks {
         }
     }
 
-    /// Returns true if no weight ever exceeds that at the start.
+    /// Returns whether no weight ever exceeds that at the start.
     pub fn never_grows(&self) -> bool {
         self.ratio() <= 1.0
     }
 
-    /// Returns true if the energy has a bound for any size of the volume: no weight grows, or none faster than
+    /// Returns whether the energy has a bound for any size of the volume: no weight grows, or none faster than
     /// walks end.
     pub fn is_tame(&self) -> bool {
         let limit = 2.0 / (1.0 + self.albedo[1]);

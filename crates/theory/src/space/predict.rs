@@ -60,7 +60,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// Returns true if there is a channel.
+    /// Returns whether there is a channel.
     pub fn any(self) -> bool {
         self.energy || self.white || self.tentative
     }

@@ -83,6 +83,10 @@ impl Recipe for LocalMajorants {
         }
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn needs(&self) -> Option<&'static str> {
         Some(match self {
             Self::Segments(_) => "max |σ_t − σ_c|",

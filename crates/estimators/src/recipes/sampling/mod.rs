@@ -20,8 +20,13 @@ pub trait Recipe: Send + Sync {
         None
     }
 
-    /// Returns true if σ̂ depends on lookups of σ_t at random places.
+    /// Returns whether σ̂ depends on lookups of σ_t at random places.
     fn learns(&self) -> bool {
+        false
+    }
+
+    /// True if σ̂ is a majorant of each part of the ray or the volume.
+    fn is_local(&self) -> bool {
         false
     }
 

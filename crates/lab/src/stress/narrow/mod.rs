@@ -145,12 +145,12 @@ pub struct Point {
 }
 
 impl Point {
-    /// Returns true if the bias exceeds the noise by more than 3 of its standard errors.
+    /// Returns whether the bias exceeds the noise by more than 3 of its standard errors.
     pub fn exceeds(&self) -> bool {
         self.bias.abs() - 3.0 * self.error > self.noise
     }
 
-    /// Returns true if the bias is below the noise by at least 3 of its standard errors. If neither holds, the walks
+    /// Returns whether the bias is below the noise by at least 3 of its standard errors. If neither holds, the walks
     /// were too few.
     pub fn holds(&self) -> bool {
         self.error > 0.0 && self.bias.abs() + 3.0 * self.error <= self.noise

@@ -75,7 +75,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Returns true if pixels have several samples each.
+    /// Returns whether pixels have several samples each.
     pub fn is_deep(&self) -> bool {
         self.kind.starts_with("deep")
     }

@@ -37,7 +37,7 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Returns true if [`super::read`] supports the type.
+    /// Returns whether [`super::read`] supports the type.
     pub fn is_read(&self) -> bool {
         nodes::Values::of(self.number).is_some()
     }

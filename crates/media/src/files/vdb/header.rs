@@ -52,12 +52,12 @@ impl Entry {
         }
     }
 
-    /// Returns true if the type is a tree of floats.
+    /// Returns whether the type is a tree of floats.
     pub(super) fn has_floats(&self) -> bool {
         self.kind.strip_suffix(HALVES).unwrap_or(&self.kind) == FLOATS
     }
 
-    /// Returns true if floats are stored as halves.
+    /// Returns whether floats are stored as halves.
     pub(super) fn has_halves(&self) -> bool {
         self.kind.ends_with(HALVES)
     }

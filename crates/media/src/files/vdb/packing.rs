@@ -27,7 +27,7 @@ pub(super) struct Packing {
     width: usize,
 }
 
-/// Returns true if a mask is on at an index.
+/// Returns whether a mask is on at an index.
 pub(in crate::files) fn is_on(mask: &[u8], place: usize) -> bool {
     mask[place / 8] >> (place % 8) & 1 == 1
 }

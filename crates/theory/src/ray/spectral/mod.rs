@@ -61,7 +61,7 @@ pub enum Tracker {
 }
 
 impl Tracker {
-    /// Returns true if real collisions end a walk.
+    /// Returns whether real collisions end a walk.
     #[inline(always)]
     pub fn is_delta(self) -> bool {
         match self {

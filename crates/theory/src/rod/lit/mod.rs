@@ -31,7 +31,7 @@ pub(super) fn walk<'a>(mesh: &Mesh, rod: &'a Rod, sampling: &'a Piecewise) -> Wa
     Walk::new(mesh, rod, Some(sampling), ParticleRule::Analog).with_orders()
 }
 
-/// Returns true if theory can cut a rod into panels.
+/// Returns whether theory can cut a rod into panels.
 pub fn is_within_reach(mesh: &Mesh, problem: &LitRod, sampling: &Piecewise) -> bool {
     walk(mesh, &problem.rod, sampling).is_within_reach()
 }
