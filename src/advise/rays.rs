@@ -127,7 +127,7 @@ fn random(
         let count = rays.count("random", 1..=MAX_RAYS);
         let camera = rays.optional("camera", |_| Camera::read(&rays, Some(PIXELS)));
         rays.close();
-        (count?, camera?)
+        (count?, camera.ok()?)
     };
     let address = Address { seed, experiment: name_hash("rays of advice"), block: 0, lane: 0 };
     let tries = (0..count * TRIES).map(|block| {

@@ -9,7 +9,7 @@ use estimators::recipes::{controls, sampling};
 use estimators::trial::Entry;
 use estimators::{Estimated, Traits};
 use media::Body;
-use media::catalogue::{Page, Settings, Value};
+use media::catalogue::{Mistake, Page, Settings, Value};
 use theory::problems::ProblemOption;
 
 /// An estimator as parsed, apart from its own settings, which the problem keeps.
@@ -47,29 +47,26 @@ pub fn read_expect(settings: &Settings) -> Option<bool> {
 /// The forms of `sampling` and `control`, for messages.
 const RECIPE: &str = "a number, a name in quotes, or a table, as in { constant = { value = … } }";
 
-/// Reads a recipe, if the file has it; `None` after a mistake.
-#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+/// Reads a recipe, if the file has it.
 fn read_if<T: ?Sized>(
     settings: &Settings,
     key: &'static str,
     body: Option<&Body>,
     read: fn(&Settings, Option<&Body>) -> Option<Box<T>>,
-) -> Option<Option<Box<T>>> {
+) -> Result<Option<Box<T>>, Mistake> {
     settings.optional(key, |key| settings.naming(key, RECIPE).and_then(|table| read(&table, body)))
 }
 
-/// Reads `sampling`, a table, or a list with one for each channel of a spectral medium; `None` after a
-/// mistake.
-#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+/// Reads `sampling`, a table, or a list with one for each channel of a spectral medium, if the file has it.
 fn read_sampling(
     settings: &Settings,
     body: Option<&Body>,
-) -> Option<Option<Box<dyn sampling::Recipe>>> {
+) -> Result<Option<Box<dyn sampling::Recipe>>, Mistake> {
     let entry = settings.entry("sampling");
     if !entry.is_some_and(|entry| matches!(entry.node.value, Value::Array(_))) {
         return read_if(settings, "sampling", body, sampling::read);
     }
-    let tables = settings.tables("sampling")?;
+    let tables = settings.tables("sampling").ok_or(Mistake)?;
     if let Some(body) = body.filter(|body| body.channels().len() != tables.len()) {
         let message = format!(
             "`sampling` lists {} channels, and the medium has {}",
@@ -77,11 +74,11 @@ fn read_sampling(
             body.channels().len()
         );
         settings.fault("sampling", message, "give one σ̂ for each channel, or one table for all");
-        return None;
+        return Err(Mistake);
     }
     let recipes: Vec<_> = tables.iter().map(|table| sampling::read(table, body)).collect();
-    let recipes = recipes.into_iter().collect::<Option<Vec<_>>>()?;
-    Some((!recipes.is_empty()).then(|| Box::new(Spectral::new(recipes)) as Box<_>))
+    let recipes = recipes.into_iter().collect::<Option<Vec<_>>>().ok_or(Mistake)?;
+    Ok((!recipes.is_empty()).then(|| Box::new(Spectral::new(recipes)) as Box<_>))
 }
 
 impl ParsedEstimator {
@@ -126,13 +123,13 @@ impl ParsedEstimator {
             let read = read_sampling(settings, body);
             read.map(|sampling| sampling.filter(|_| inputs.sampling))
         } else {
-            Some(None)
+            Ok(None)
         };
         let control = if may_take.control {
             let read = read_if(settings, "control", body, controls::read);
             read.map(|control| control.filter(|_| inputs.control))
         } else {
-            Some(None)
+            Ok(None)
         };
         if inputs.sampling && !settings.has("sampling") && !defaults.sampling {
             let message = format!("`{name}` has no sampling extinction");
@@ -143,8 +140,8 @@ impl ParsedEstimator {
         Some(Self {
             name: name.to_owned(),
             traits,
-            sampling: sampling?,
-            control: control?,
+            sampling: sampling.ok()?,
+            control: control.ok()?,
             expect_biased: own_expect?,
         })
     }
@@ -279,7 +276,7 @@ impl Estimators {
             };
             tables.iter().map(&mut read).collect::<Vec<_>>()
         });
-        if let Some(Some(sampling)) = &sampling {
+        if let Ok(Some(sampling)) = &sampling {
             countable(settings, defaults, Some(sampling.as_ref()))?;
         }
         let list = list?;
@@ -289,7 +286,7 @@ impl Estimators {
         }
         let list: Vec<_> = list.into_iter().collect::<Option<_>>()?;
         refuse_idle_controls(settings, &list, defaults.swept);
-        Some(Self { list, sampling: sampling?, control: control? })
+        Some(Self { list, sampling: sampling.ok()?, control: control.ok()? })
     }
 
     /// Returns the σ̂ of an estimator; `None` if it takes none.

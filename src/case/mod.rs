@@ -67,7 +67,7 @@ use crate::case::sweep::{SweepAxis, SweptQuantity, Variation};
 use estimators::Refusal;
 use media::Body;
 use media::catalogue::own_pages::{self, OwnPages};
-use media::catalogue::{Domain, Fault, Page, PageList, Settings, Value};
+use media::catalogue::{Domain, Fault, Mistake, Page, PageList, Settings, Value};
 use numeric::digits::number;
 use numeric::rng::{Address, name_hash};
 use theory::problems;
@@ -257,12 +257,12 @@ fn read_problem(root: &Settings, known: Option<&Body>) -> Option<Problem> {
     };
     let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
     let sweep = read_sweep(&settings);
-    let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
+    let swept = sweep.as_ref().ok().and_then(Option::as_ref).map(|axis| axis.what);
     let defaults =
         Defaults { expect_biased: expect_biased.unwrap_or_default(), swept, ..Defaults::default() };
     let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults);
     settings.close();
-    let (scenario, sweep) = (scenario?, sweep?);
+    let (scenario, sweep) = (scenario?, sweep.ok()?);
     expect_biased?;
     let none_has = |what| !(0..scenario.estimators()).any(|e| scenario.depends_on(e, what));
     if swept.is_some_and(|what| what == SweptQuantity::Albedo && none_has(what)) {
@@ -332,16 +332,19 @@ fn has_one_channel(settings: &Settings, body: &Body) -> bool {
     false
 }
 
-#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
-fn read_sweep(settings: &Settings) -> Option<Option<SweepAxis>> {
+/// Reads `sweep`, if the file has it.
+fn read_sweep(settings: &Settings) -> Result<Option<SweepAxis>, Mistake> {
     match settings.entry("sweep") {
         Some(entry) if !matches!(entry.node.value, Value::Table(_)) => {
             let help = "write what is swept and its values, as in `sweep.sampling = [1, 2, 4]`";
             settings.fault("sweep", "`sweep` is no table", help);
-            None
+            Err(Mistake)
         }
-        Some(_) => SweepAxis::read(&settings.table("sweep")?).map(Some),
-        None => Some(None),
+        Some(_) => {
+            let axis = settings.table("sweep").and_then(|table| SweepAxis::read(&table));
+            axis.map(Some).ok_or(Mistake)
+        }
+        None => Ok(None),
     }
 }
 
@@ -354,19 +357,17 @@ fn read_tolerance(root: &Settings) -> Option<Tolerance> {
     }
     let Some(settings) = root.table_if("tolerance") else { return Some(Tolerance::default()) };
     let read = |key: &'static str| {
-        if settings.has(key) {
+        settings.optional(key, |key| {
             let tolerance = settings.number(key, Domain::Positive)?;
             if tolerance >= 1.0 {
                 let help = "a tolerance is relative, as in 0.01";
                 settings.fault(key, "a tolerance below 1 is expected", help);
                 return None;
             }
-            Some(Some(tolerance))
-        } else {
-            Some(None)
-        }
+            Some(tolerance)
+        })
     };
     let (mean, variance, lookups) = (read("mean"), read("variance"), read("lookups"));
     settings.close();
-    Some(Tolerance { mean: mean?, variance: variance?, lookups: lookups? })
+    Some(Tolerance { mean: mean.ok()?, variance: variance.ok()?, lookups: lookups.ok()? })
 }

@@ -67,8 +67,8 @@ fn read_choice(settings: &Settings) -> Option<Choice> {
     let grid = settings.optional("grid", |key| settings.text(key));
     let channel = settings.optional("channel", |key| settings.count(key, 0..=65_535));
     let axes = settings.word_or("axes", &Axes::NAMES, "zyx");
-    let channel = channel?.and_then(|channel| usize::try_from(channel).ok());
-    Some(Choice { grid: grid?, channel, axes: Axes::named(axes?)? })
+    let channel = channel.ok()?.and_then(|channel| usize::try_from(channel).ok());
+    Some(Choice { grid: grid.ok()?, channel, axes: Axes::named(axes?)? })
 }
 
 /// Contents of the file as sentences: voxels along each axis and the box.

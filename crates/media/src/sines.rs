@@ -123,7 +123,7 @@ impl<K> Waves<K> {
         let phases = settings.optional("phases", |key| settings.numbers(key, Domain::Finite, 1));
         let (base, amplitudes, frequencies) = (base?, amplitudes?, frequencies?);
         let waves = frequencies.len();
-        let phases = phases?.unwrap_or_else(|| vec![0.0; waves]);
+        let phases = phases.ok()?.unwrap_or_else(|| vec![0.0; waves]);
         if amplitudes.len() != waves || phases.len() != waves {
             let (a, p) = (amplitudes.len(), phases.len());
             let message = format!("there are {waves} waves, {a} amplitudes and {p} phases");

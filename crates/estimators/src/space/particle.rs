@@ -59,7 +59,8 @@ impl Particle {
                 return None;
             }
             Some(below)
-        })?;
+        });
+        let roulette = roulette.ok()?;
         let rule = ParticleRule::ALL.into_iter().find(|rule| Some(rule.name()) == word)?;
         Some(Self { roulette, ..Self::of(rule) })
     }

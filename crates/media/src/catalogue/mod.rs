@@ -15,6 +15,6 @@ mod words;
 
 pub use own_pages::{OwnPage, OwnPages};
 pub use page::{Page, PageList};
-pub use settings::Settings;
+pub use settings::{Mistake, Settings};
 pub use tree::{Domain, Entry, Fault, Node, Value};
 pub use words::suggestion;

@@ -14,6 +14,10 @@ use super::words::{meant, quoted, whole};
 use super::{Domain, Entry, Fault, Value};
 use numeric::digits::number;
 
+/// A mistake in a setting, which is recorded with its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mistake;
+
 /// A table that is being read.
 #[derive(Debug)]
 pub struct Settings<'a> {
@@ -69,14 +73,17 @@ impl<'a> Settings<'a> {
         self.entry(key).is_some()
     }
 
-    /// The value that `read` returns if the file has the key, and `None` inside if not.
-    #[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+    /// Returns the value that `read` returns if the file has the key; `None` if it does not.
+    ///
+    /// # Errors
+    ///
+    /// `read` has recorded a mistake.
     pub fn optional<T>(
         &self,
         key: &'static str,
         read: impl FnOnce(&'static str) -> Option<T>,
-    ) -> Option<Option<T>> {
-        if self.has(key) { read(key).map(Some) } else { Some(None) }
+    ) -> Result<Option<T>, Mistake> {
+        if self.has(key) { read(key).map(Some).ok_or(Mistake) } else { Ok(None) }
     }
 
     /// Returns whether the table has no keys.

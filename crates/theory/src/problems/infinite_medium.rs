@@ -61,7 +61,7 @@ impl Problem for InfiniteMedium {
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::read(body, settings);
         let radii = settings.optional("radii", |key| settings.numbers(key, Domain::Positive, 1));
-        let (scene, radii) = (scene?, radii?.unwrap_or_default());
+        let (scene, radii) = (scene?, radii.ok()?.unwrap_or_default());
         let is_homogeneous = scene.volume.facts().single_value.is_some()
             && scene.volume.bounds() == Bounds::Everywhere;
         let extinction = scene.volume.extinction_at(Point([0.0; 3]));

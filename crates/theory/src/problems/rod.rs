@@ -196,7 +196,7 @@ impl Problem for Rod {
         let medium = body?.medium();
         let [albedo, forward] = scattering?;
         let channels =
-            channels(parts? as usize, absorbed?, orders?.map(|highest| highest as usize));
+            channels(parts? as usize, absorbed?, orders.ok()?.map(|highest| highest as usize));
         Some(Self::new(medium, &albedo, &forward, channels))
     }
 

@@ -43,8 +43,8 @@ impl Explorers {
                 return None;
             }
             Some(octaves)
-        })?;
-        Some(Self { points: points? as usize, octaves })
+        });
+        Some(Self { points: points? as usize, octaves: octaves.ok()? })
     }
 }
 

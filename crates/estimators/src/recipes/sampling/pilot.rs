@@ -40,7 +40,7 @@ impl Pilot {
         let rays = settings.count_or("rays", 1..=10_000, 8);
         let safety = settings.number_or("safety", Domain::Positive, 1.2);
         let start = settings.optional("start", |key| settings.number(key, Domain::Positive));
-        Some(Self { rays: rays?, safety: safety?, start: start? })
+        Some(Self { rays: rays?, safety: safety?, start: start.ok()? })
     }
 }
 
