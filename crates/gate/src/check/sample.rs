@@ -1,4 +1,4 @@
-//! What closures return, and closures that return it.
+//! Draws of closures, and the closures that make them.
 
 /// A draw: one value or several, with or without the number of lookups of σ_t.
 pub trait Sample: Send {

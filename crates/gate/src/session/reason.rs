@@ -112,9 +112,9 @@ pub enum Reason {
     BiasedElsewhere,
     /// Blocks or streams differ because the mean or the variance is off: no evidence of a dependence.
     Follows {
-        /// What differs.
+        /// Reason that the blocks or streams differ.
         of: Box<Self>,
-        /// What is off.
+        /// Quantity that is off.
         from: What,
     },
     /// Draws are NaN or infinite.

@@ -34,6 +34,10 @@ impl Recipe for Spectral {
         self.recipes.iter().any(|recipe| recipe.learns())
     }
 
+    fn is_local(&self) -> bool {
+        self.recipes.iter().any(|recipe| recipe.is_local())
+    }
+
     fn needs(&self) -> Option<&'static str> {
         self.recipes.iter().find_map(|recipe| recipe.needs())
     }
