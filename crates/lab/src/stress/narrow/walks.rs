@@ -165,7 +165,7 @@ struct One<'a, N>(&'a Setup<SingleScattering>, Subject<'a>, &'a Trail, PhantomDa
 impl<N: Precision> Run for One<'_, N> {
     type Output = Option<f64>;
 
-    /// A function of its own for each walk: the compiler takes minutes for one of all.
+    /// A function of its own for each walk: the time of a compiler grows faster than a function.
     #[inline(never)]
     fn run(self, walk: &impl Walk) -> Option<f64> {
         compiled_once(
