@@ -10,11 +10,9 @@
 //! ```
 
 use super::ray_setup::RaySetup;
-use super::shadow::ToLight;
+use super::shadow::{ToLight, scored_by_shadow_rays};
 use crate::walks::{Route, TentativeCollision, Walk};
-use media::Batches;
 use media::sampling::{BothWays, PackedFlight};
-use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 
@@ -123,25 +121,7 @@ impl<const RESAMPLED: bool> Walk for Interactions<'_, RESAMPLED> {
         !ends
     }
 
-    #[inline(always)]
-    fn in_space<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
-        path.to_light.collisions()
-    }
-
-    #[inline(always)]
-    fn fields(&self) -> &[Batches<'_>] {
-        self.ground.fields
-    }
-
-    #[inline(always)]
-    fn field(&self, _: usize, place: Point) -> f64 {
-        self.ground.rays.volume.extinction_at(place)
-    }
-
-    #[inline(always)]
-    fn value<L: Lane>(&self, path: &Path<L>, _: L::Mask, _: usize) -> L {
-        path.score
-    }
+    scored_by_shadow_rays!();
 }
 
 impl<const RESAMPLED: bool> Interactions<'_, RESAMPLED> {

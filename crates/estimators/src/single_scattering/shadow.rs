@@ -127,6 +127,33 @@ impl<L: Lane> ToLight<L> {
     }
 }
 
+/// Methods of a [`Walk`](crate::walks::Walk) with a `ground`, and with `to_light` and `score` in its state: all its lookups in space are those of
+/// its shadow rays. A walk has one implementation of its trait, so that these cannot be the defaults of another one.
+macro_rules! scored_by_shadow_rays {
+    () => {
+        #[inline(always)]
+        fn in_space<L: Lane>(&self, path: &Self::State<L>) -> (L::Mask, [L; 3]) {
+            path.to_light.collisions()
+        }
+
+        #[inline(always)]
+        fn fields(&self) -> &[media::Batches<'_>] {
+            self.ground.fields
+        }
+
+        #[inline(always)]
+        fn field(&self, _: usize, place: numeric::geometry::Point) -> f64 {
+            self.ground.rays.volume.extinction_at(place)
+        }
+
+        #[inline(always)]
+        fn value<L: Lane>(&self, path: &Self::State<L>, _: L::Mask, _: usize) -> L {
+            path.score
+        }
+    };
+}
+pub(super) use scored_by_shadow_rays;
+
 /// Checks delta tracking of shadow rays: it needs a majorant on every ray, and its walks must end.
 ///
 /// # Errors

@@ -8,12 +8,10 @@
 //! ```
 
 use super::ray_setup::RaySetup;
-use super::shadow::ToLight;
+use super::shadow::{ToLight, scored_by_shadow_rays};
 use super::vertices::{Right, WalkEvents};
 use crate::walks::{Route, TentativeCollision, Walk};
-use media::Batches;
 use media::sampling::BothWays;
-use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 
@@ -193,23 +191,5 @@ impl Walk for Shared<'_> {
         !ends
     }
 
-    #[inline(always)]
-    fn in_space<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
-        path.to_light.collisions()
-    }
-
-    #[inline(always)]
-    fn fields(&self) -> &[Batches<'_>] {
-        self.ground.fields
-    }
-
-    #[inline(always)]
-    fn field(&self, _: usize, place: Point) -> f64 {
-        self.ground.rays.volume.extinction_at(place)
-    }
-
-    #[inline(always)]
-    fn value<L: Lane>(&self, path: &Path<L>, _: L::Mask, _: usize) -> L {
-        path.score
-    }
+    scored_by_shadow_rays!();
 }

@@ -19,11 +19,9 @@
 use super::main_part::MainPart;
 use super::points::{Absorption, Vertices};
 use super::ray_setup::RaySetup;
-use super::shadow::{TOGETHER, ToLight};
+use super::shadow::{TOGETHER, ToLight, scored_by_shadow_rays};
 use crate::walks::{Route, TentativeCollision, Walk};
-use media::Batches;
 use media::sampling::BothWays;
-use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::problems::SingleScattering;
@@ -450,27 +448,9 @@ impl<S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool> Walk
     }
 
     #[inline(always)]
-    fn in_space<L: Lane>(&self, path: &Path<L>) -> (L::Mask, [L; 3]) {
-        path.to_light.collisions()
-    }
-
-    #[inline(always)]
-    fn fields(&self) -> &[Batches<'_>] {
-        self.ground.fields
-    }
-
-    #[inline(always)]
-    fn field(&self, _: usize, place: Point) -> f64 {
-        self.ground.rays.volume.extinction_at(place)
-    }
-
-    #[inline(always)]
     fn lookups<L: Lane>(&self, path: &Path<L>, counted: L) -> L {
         counted + path.known
     }
 
-    #[inline(always)]
-    fn value<L: Lane>(&self, path: &Path<L>, _: L::Mask, _: usize) -> L {
-        path.score
-    }
+    scored_by_shadow_rays!();
 }
