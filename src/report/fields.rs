@@ -7,7 +7,7 @@ use serde::ser::Serializer;
 
 use crate::report::layout::{self, Column, Grid, Pen};
 use crate::report::run::summary_csv::Line;
-pub use files::{Named, artifact, columns, csv, json, markdown, object, tree};
+pub use files::{Named, artifact, columns, csv, described, json, markdown, object, objects};
 use numeric::digits::{count, enough, fixed, number, percent, short, signed, time};
 
 /// Content of one field.
@@ -25,14 +25,8 @@ pub enum Cell {
     Count(Option<u64>),
     /// List of numbers; may be empty.
     List(Vec<f64>),
-    /// List of counts; may be empty.
-    Counts(Vec<u32>),
     /// Yes or no, if it is known.
     Flag(Option<bool>),
-    /// List of sentences; may be empty.
-    Texts(Vec<String>),
-    /// Rows of another table.
-    Rows(Vec<Named<Cell>>),
 }
 
 impl Cell {
@@ -44,23 +38,8 @@ impl Cell {
             Self::Number(x) | Self::Score(x, _) => x.map(number).unwrap_or_default(),
             Self::Count(count) => count.map(|n| n.to_string()).unwrap_or_default(),
             Self::List(list) => list.iter().map(|&x| number(x)).collect::<Vec<_>>().join(" "),
-            Self::Counts(list) => list.iter().map(u32::to_string).collect::<Vec<_>>().join(" "),
             Self::Flag(flag) => flag.map(|is_so| is_so.to_string()).unwrap_or_default(),
-            Self::Texts(texts) => texts.join("; "),
-            Self::Rows(rows) => rows.len().to_string(),
         }
-    }
-
-    /// Returns a cell of rows of a table.
-    pub fn rows<T: Table>(rows: &[T]) -> Self {
-        Self::Rows(files::objects(&T::of_files(), rows))
-    }
-
-    fn is_known(&self) -> bool {
-        !matches!(
-            self,
-            Self::Word(None) | Self::Number(None) | Self::Count(None) | Self::Flag(None)
-        )
     }
 
     fn kind(&self) -> &'static str {
@@ -68,7 +47,7 @@ impl Cell {
             Self::Text(_) | Self::Word(_) | Self::Flag(_) => "text",
             Self::Number(_) | Self::Score(..) => "number",
             Self::Count(_) => "count",
-            Self::List(_) | Self::Counts(_) | Self::Texts(_) | Self::Rows(_) => "list",
+            Self::List(_) => "list",
         }
     }
 }
@@ -81,10 +60,7 @@ impl Serialize for Cell {
             Self::Number(number) | Self::Score(number, _) => number.serialize(serializer),
             Self::Count(count) => count.serialize(serializer),
             Self::List(list) => list.serialize(serializer),
-            Self::Counts(list) => list.serialize(serializer),
             Self::Flag(flag) => flag.serialize(serializer),
-            Self::Texts(texts) => texts.serialize(serializer),
-            Self::Rows(rows) => rows.serialize(serializer),
         }
     }
 }
@@ -111,9 +87,7 @@ cells! {
     usize: |n| Self::Count(Some(n as u64));
     Option<u64>: |n| Self::Count(n);
     Option<usize>: |n| Self::Count(n.map(|n| n as u64));
-    &Vec<u32>: |list| Self::Counts(list.clone());
     Option<bool>: |flag| Self::Flag(flag);
-    &Vec<String>: |texts| Self::Texts(texts.clone());
     bool: |is_so| Self::Text(is_so.to_string());
     &Vec<f64>: |list| Self::List(list.clone());
 }

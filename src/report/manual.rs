@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
-use crate::judge::images::judgement::{Judgement, Tile};
+use crate::judge::images::judgement::Tile;
 use crate::report::changes::Difference;
-use crate::report::fields::{Table, markdown};
+use crate::report::fields::{Table, described, markdown};
+use crate::report::judge::images::MEANINGS;
 use crate::report::run::summary_csv::Line;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 use crate::report::run::{case_csv, checks_csv};
@@ -35,7 +36,7 @@ pub fn columns(others: &[(&str, String)]) -> String {
     add("Advice: `advise.csv`, `advise --format csv|json`", &of_files::<advise::Joined>());
     add(
         "Images of a renderer: `judgement.json`, `judge --images --format json`; `order.lag` is `lag` in the object `order`",
-        &of_files::<&Judgement>(),
+        &described(MEANINGS),
     );
     add("Tiles of images: `tiles.csv` of `judge --images`", &of_files::<&Tile>());
     add("Images: `gallery.csv` of `render`", &of_files::<render::Joined>());

@@ -6,8 +6,7 @@ use std::borrow::Borrow;
 use serde::Serialize;
 use serde::ser::Serializer;
 
-use super::{Cell, Field, Table};
-use crate::json;
+use super::{Cell, Field};
 use crate::report::{Artifact, ReportError};
 
 /// Returns rows as CSV, with a first line of names; `name` is the file in an error.
@@ -80,42 +79,6 @@ fn json_of(objects: &[Named<Cell>]) -> serde_json::Result<String> {
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
 }
 
-/// Content of a field of a tree: a cell, or an object of cells.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Node {
-    Cell(Cell),
-    Object(Named<Cell>),
-    Unknown(()),
-}
-
-/// Returns a row as a JSON object. Names with a point are those of an object within it, as `order.lag`, which is `null` if
-/// none of its fields is known.
-pub fn tree<T: Table>(row: &T) -> Result<String, ReportError> {
-    Ok(tree_of(object(&T::of_files(), row))? + "\n")
-}
-
-fn tree_of(Named(cells): Named<Cell>) -> serde_json::Result<String> {
-    let mut tree: Vec<(&'static str, Node)> = Vec::new();
-    for (name, cell) in cells {
-        let Some((object, name)) = name.split_once('.') else {
-            tree.push((name, Node::Cell(cell)));
-            continue;
-        };
-        match tree.last_mut() {
-            Some((last, Node::Object(Named(cells)))) if *last == object => cells.push((name, cell)),
-            _ => tree.push((object, Node::Object(Named(vec![(name, cell)])))),
-        }
-    }
-    for (_, node) in &mut tree {
-        if matches!(node, Node::Object(Named(cells)) if !cells.iter().any(|(_, cell)| cell.is_known()))
-        {
-            *node = Node::Unknown(());
-        }
-    }
-    json::pretty(&Named(tree))
-}
-
 /// Returns rows as a JSON object of columns, each its kind (`text`, `number`, `count` or `list`) and its values. Unknown is
 /// `null`; without rows there are no columns.
 pub fn columns<T>(fields: &[Field<T>], rows: &[T]) -> Result<String, ReportError> {
@@ -151,9 +114,18 @@ pub fn markdown<T>(fields: &[Field<T>]) -> String {
             own += &line(name, head, unit, meaning);
         }
     }
-    let head = "| column | heading | unit | meaning |\n|---|---|---|---|\n";
-    shared_words(&shared) + head + &own
+    shared_words(&shared) + HEAD + &own
 }
+
+/// Returns names with their meanings as the same table.
+pub fn described(meanings: &[(&str, &str)]) -> String {
+    let lines: String =
+        meanings.iter().map(|(name, meaning)| line(name, name, "", meaning)).collect();
+    HEAD.to_owned() + &lines
+}
+
+/// First lines of the tables of fields.
+const HEAD: &str = "| column | heading | unit | meaning |\n|---|---|---|---|\n";
 
 /// Returns the words about fields that rows of a run have, too.
 fn shared_words(names: &[&str]) -> String {

@@ -6,9 +6,10 @@ use gate::CheckId;
 use gate::causes::Pattern;
 use gate::stats::gate::Evidence;
 use gate::stats::verdict::{MISS, Verdict};
+use serde::{Serialize, Serializer};
 
 /// Verdict on a stack, with its numbers.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
@@ -35,6 +36,7 @@ pub struct Judgement {
     /// Dependence of the passes on each other.
     pub order: Dependence,
     /// Dependence of the pixels of a pass on each other.
+    #[serde(serialize_with = "without_lag")]
     pub neighbours: Dependence,
     /// Passes that share values, from 0; empty if none share any.
     pub repeated: Vec<u32>,
@@ -48,19 +50,24 @@ pub struct Judgement {
     pub comparison: Option<Comparison>,
     /// Picture in the channel with the most obvious bias that the claimed variance does not show, with the standard error
     /// and z of the passes' own spread; `None` without such a bias.
+    #[serde(skip)]
     pub shown: Option<Tile>,
     /// Whole picture, one entry per channel.
+    #[serde(skip)]
     pub whole: Vec<Tile>,
     /// Every tile, the smallest first, row after row from the top, each with all its channels.
+    #[serde(skip)]
     pub tiles: Vec<Tile>,
     /// Numbers of tiles by their verdicts.
+    #[serde(skip)]
     pub counts: Counts,
     /// Tiles with the most evidence against them.
+    #[serde(skip)]
     pub worst: Vec<Tile>,
 }
 
 /// Numbers of tiles by their verdicts; a tile counts in each channel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// K, the number of all tiles.
     pub tiles: usize,
@@ -73,7 +80,7 @@ pub struct Counts {
 }
 
 /// Value that refutes the claim by itself.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Refuted {
     /// Pass, from 0.
     pub pass: usize,
@@ -96,7 +103,7 @@ impl Refuted {
 }
 
 /// Test for dependence of some numbers on each other.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Dependence {
     /// Description of a dependence; empty if none was found.
     pub reason: String,
@@ -119,8 +126,22 @@ impl Dependence {
     }
 }
 
+/// Serializes a dependence of neighbours, which has no lag.
+fn without_lag<S: Serializer>(of: &Dependence, to: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct OfNeighbours<'a> {
+        reason: &'a str,
+        evidence: f64,
+        limit: f64,
+        correlation: Option<f64>,
+        is_tested: bool,
+    }
+    let &Dependence { ref reason, evidence, limit, correlation, lag: _, is_tested } = of;
+    OfNeighbours { reason, evidence, limit, correlation, is_tested }.serialize(to)
+}
+
 /// Test of the claimed variance, over all pixels.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Variance {
     /// Mean of (x − truth)²/V.
     pub about_truth: f64,
@@ -135,11 +156,12 @@ pub struct Variance {
     /// True if it is refuted.
     pub is_refuted: bool,
     /// True if the passes plainly vary less.
+    #[serde(skip)]
     pub is_too_large: bool,
 }
 
 /// Variance that was estimated from passes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Estimate {
     /// Number of passes that it was estimated from.
     pub passes: usize,
@@ -152,11 +174,19 @@ pub struct Estimate {
     /// Number of variances that are NaN or infinite: these values are not judged.
     pub unknown: u64,
     /// First of either kind: row, column and channel, from 0.
+    #[serde(flatten, serialize_with = "by_names")]
     pub first: Option<[usize; 3]>,
 }
 
+/// Serializes a place as three fields.
+#[allow(clippy::ref_option)] // serde asks for it
+fn by_names<S: Serializer>(first: &Option<[usize; 3]>, to: S) -> Result<S::Ok, S::Error> {
+    let names = [("first_row", 0), ("first_column", 1), ("first_channel", 2)];
+    to.collect_map(names.map(|(name, axis)| (name, first.map(|place| place[axis]))))
+}
+
 /// Two stacks against each other.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// Number of passes of the reference.
     pub passes: usize,

@@ -3,9 +3,10 @@
 use std::num::NonZeroUsize;
 
 use super::claim::ImageError;
+use serde::Serialize;
 
 /// Size of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Size {
     /// Number of rows.
     pub rows: usize,

@@ -13,7 +13,7 @@ use crate::report::fields::{self, Table, table};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 
-pub use record::json;
+pub use record::{MEANINGS, json};
 
 /// Returns `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` if tiles were judged.
 pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, ReportError> {

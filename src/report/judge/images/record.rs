@@ -1,94 +1,160 @@
 //! `judgement.json`: the judgement of a stack of images, for machines.
 
+use serde::Serialize;
+
+use crate::json;
 use crate::judge::images::Judgement;
-use crate::judge::images::judgement::{Comparison, Estimate, Refuted, Tile, Variance};
+use crate::judge::images::judgement::{Counts, Tile};
 use crate::report::ReportError;
-use crate::report::fields::{Cell, table, tree};
+use crate::report::fields::{Cell, Named, Table, objects};
 
-/// Returns the judgement as a JSON object.
+/// The judgement, with tiles by the columns of `tiles.csv`.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    judgement: &'a Judgement,
+    whole: Vec<Named<Cell>>,
+    counts: Counts,
+    worst: Vec<Named<Cell>>,
+}
+
+/// Returns the judgement as a JSON object. An unknown number is `null`, and so is an object without content.
 pub fn json(judgement: &Judgement) -> Result<String, ReportError> {
-    tree(&judgement)
+    let columns = <&Tile>::of_files();
+    let document = Document {
+        judgement,
+        whole: objects(&columns, &judgement.whole),
+        counts: judgement.counts,
+        worst: objects(&columns, &judgement.worst),
+    };
+    Ok(json::pretty(&document)? + "\n")
 }
 
-fn refuted<T>(of: &Judgement, field: fn(&Refuted) -> T) -> Option<T> {
-    of.refuted_by.as_ref().map(field)
-}
+/// Fields of the object and their meanings, for the manual; `order.lag` is `lag` in the object `order`.
+#[rustfmt::skip] // a line for each field
+pub const MEANINGS: &[(&str, &str)] = &[
+    ("verdict", "Result: pass, fail or inconclusive"),
+    ("reason", "Reason of the verdict; empty for a plain pass"),
+    ("guarantees", "Promises of the verdict, and their assumptions"),
+    ("alpha", "Probability that correct passes fail"),
+    ("beta", "Probability that a tile, or the whole, passes although it is off by its tolerance"),
+    ("listed_rate", "Bound on the expected share of false entries on the list of suspects"),
+    ("passes", "Number of passes"),
+    ("size.rows", "Height of a pass in pixels"),
+    ("size.columns", "Width of a pass in pixels"),
+    ("size.channels", "Number of values of a pixel"),
+    ("tile", "Rows and columns of the smallest tiles"),
+    ("refuted_by.pass", "Pass of the first value that refutes the claim by itself; this and all places count from 0"),
+    ("refuted_by.row", "Its row"),
+    ("refuted_by.column", "Its column"),
+    ("refuted_by.channel", "Its channel"),
+    ("refuted_by.value", "The value"),
+    ("refuting", "Number of such values"),
+    ("order.reason", "Dependence of the passes on each other; empty if none was found"),
+    ("order.evidence", "ln 1/p against independent passes"),
+    ("order.limit", "Limit of that evidence"),
+    ("order.correlation", "Strongest correlation of passes"),
+    ("order.lag", "Number of passes between them"),
+    ("order.is_tested", "Whether the passes suffice for the test"),
+    ("neighbours.reason", "Dependence of the pixels of a pass on each other; empty if none was found"),
+    ("neighbours.evidence", "ln E against independent pixels"),
+    ("neighbours.limit", "Limit of that evidence"),
+    ("neighbours.correlation", "Correlation of adjacent pixels"),
+    ("neighbours.is_tested", "Whether there are pixels to test"),
+    ("repeated", "Passes that share values"),
+    ("variance.about_truth", "Mean of (x − truth)²/V over all pixels"),
+    ("variance.about_mean", "Mean of s²/V"),
+    ("variance.margin", "Largest mean of s²/V with which a picture passes"),
+    ("variance.ln_e", "Evidence against a variance of at most V"),
+    ("variance.limit", "Limit of that evidence"),
+    ("variance.is_refuted", "Whether the variance is refuted"),
+    ("estimate.passes", "Number of passes that the variance was estimated from"),
+    ("estimate.kurtosis", "Kurtosis of the smallest tiles that the evidence relies on"),
+    ("estimate.is_given", "Whether the kurtosis was given"),
+    ("estimate.negative", "Number of negative variances, which count as 0"),
+    ("estimate.unknown", "Number of variances that are no numbers: their values are not judged"),
+    ("estimate.first_row", "Row of the first of either"),
+    ("estimate.first_column", "Its column"),
+    ("estimate.first_channel", "Its channel"),
+    ("truth_passes", "Number of passes that the truth is the mean of; null for an exact truth"),
+    ("comparison.passes", "Number of passes of the reference"),
+    ("comparison.method", "Test of equal distributions: permutation, signs or none"),
+    ("comparison.permutations", "Number of random permutations"),
+    ("comparison.p", "Smallest p-value of all tiles and the whole together, for equal distributions"),
+    ("comparison.is_same_distribution", "Whether equal distributions are claimed"),
+    ("comparison.spread", "Variance over that of the reference"),
+    ("comparison.spread_p", "p-value of that ratio for equal distributions"),
+    ("comparison.kurtosis", "Largest kurtosis of the smallest tiles, as measured"),
+    ("whole", "Whole picture, an entry per channel, with the columns of `tiles.csv`"),
+    ("counts.tiles", "Number of all tiles, in each channel"),
+    ("counts.pass", "Number that pass"),
+    ("counts.fail", "Number that fail, by Holm"),
+    ("counts.listed", "Number on the list of suspects, by e-BH"),
+    ("worst", "Tiles with the most evidence against them, with the columns of `tiles.csv`"),
+];
 
-fn variance<T>(of: &Judgement, field: fn(&Variance) -> T) -> Option<T> {
-    of.variance.as_ref().map(field)
-}
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
 
-fn estimate<T>(of: &Judgement, field: fn(&Estimate) -> T) -> Option<T> {
-    of.estimate.as_ref().map(field)
-}
+    use super::*;
+    use crate::judge::images::judgement::{Comparison, Estimate, Refuted, Variance};
+    use crate::judge::images::{Claim, Level, Options, Size, Stack, judge};
 
-fn comparison<T>(of: &Judgement, field: fn(&Comparison) -> T) -> Option<T> {
-    of.comparison.as_ref().map(field)
-}
+    /// Names of the fields of an object, in their order.
+    fn names(within: &str, value: &Value) -> Vec<String> {
+        let fields = value.as_object().into_iter().flatten();
+        fields
+            .flat_map(|(name, value)| match value {
+                Value::Object(_) => names(&format!("{within}{name}."), value),
+                _ => vec![format!("{within}{name}")],
+            })
+            .collect()
+    }
 
-fn tiles(tiles: &[Tile]) -> Cell {
-    Cell::rows(&tiles.iter().collect::<Vec<_>>())
-}
-
-table! {
-    impl<'a> for &'a Judgement {
-        "verdict": "Result: pass, fail or inconclusive" = |of| of.verdict.word();
-        "reason": "Reason of the verdict; empty for a plain pass" = |of| &of.reason;
-        "guarantees": "Promises of the verdict, and their assumptions" = |of| &of.guarantees;
-        "alpha": "Probability that correct passes fail" = |of| of.alpha;
-        "beta": "Probability that a tile, or the whole, passes although it is off by its tolerance" = |of| of.beta;
-        "listed_rate": "Bound on the expected share of false entries on the list of suspects" = |of| of.listed_rate;
-        "passes": "Number of passes" = |of| of.passes;
-        "size.rows": "Height of a pass in pixels" = |of| of.size.rows;
-        "size.columns": "Width of a pass in pixels" = |of| of.size.columns;
-        "size.channels": "Number of values of a pixel" = |of| of.size.channels;
-        "tile": "Rows and columns of the smallest tiles" = |of| of.tile;
-        "refuted_by.pass": "Pass of the first value that refutes the claim by itself; this and all places count from 0" = |of| refuted(of, |value| value.pass);
-        "refuted_by.row": "Its row" = |of| refuted(of, |value| value.row);
-        "refuted_by.column": "Its column" = |of| refuted(of, |value| value.column);
-        "refuted_by.channel": "Its channel" = |of| refuted(of, |value| value.channel);
-        "refuted_by.value": "The value" = |of| refuted(of, |value| value.value);
-        "refuting": "Number of such values" = |of| of.refuting;
-        "order.reason": "Dependence of the passes on each other; empty if none was found" = |of| &of.order.reason;
-        "order.evidence": "ln 1/p against independent passes" = |of| of.order.evidence;
-        "order.limit": "Limit of that evidence" = |of| of.order.limit;
-        "order.correlation": "Strongest correlation of passes" = |of| of.order.correlation;
-        "order.lag": "Number of passes between them" = |of| of.order.lag;
-        "order.is_tested": "Whether the passes suffice for the test" = |of| Some(of.order.is_tested);
-        "neighbours.reason": "Dependence of the pixels of a pass on each other; empty if none was found" = |of| &of.neighbours.reason;
-        "neighbours.evidence": "ln E against independent pixels" = |of| of.neighbours.evidence;
-        "neighbours.limit": "Limit of that evidence" = |of| of.neighbours.limit;
-        "neighbours.correlation": "Correlation of adjacent pixels" = |of| of.neighbours.correlation;
-        "neighbours.is_tested": "Whether there are pixels to test" = |of| Some(of.neighbours.is_tested);
-        "repeated": "Passes that share values" = |of| &of.repeated;
-        "variance.about_truth": "Mean of (x − truth)²/V over all pixels" = |of| variance(of, |found| found.about_truth);
-        "variance.about_mean": "Mean of s²/V" = |of| variance(of, |found| found.about_mean);
-        "variance.margin": "Largest mean of s²/V with which a picture passes" = |of| variance(of, |found| found.margin);
-        "variance.ln_e": "Evidence against a variance of at most V" = |of| variance(of, |found| found.ln_e);
-        "variance.limit": "Limit of that evidence" = |of| variance(of, |found| found.limit);
-        "variance.is_refuted": "Whether the variance is refuted" = |of| variance(of, |found| found.is_refuted);
-        "estimate.passes": "Number of passes that the variance was estimated from" = |of| estimate(of, |found| found.passes);
-        "estimate.kurtosis": "Kurtosis of the smallest tiles that the evidence relies on" = |of| estimate(of, |found| found.kurtosis);
-        "estimate.is_given": "Whether the kurtosis was given" = |of| estimate(of, |found| found.is_given);
-        "estimate.negative": "Number of negative variances, which count as 0" = |of| estimate(of, |found| found.negative);
-        "estimate.unknown": "Number of variances that are no numbers: their values are not judged" = |of| estimate(of, |found| found.unknown);
-        "estimate.first_row": "Row of the first of either" = |of| of.estimate.and_then(|found| Some(found.first?[0]));
-        "estimate.first_column": "Its column" = |of| of.estimate.and_then(|found| Some(found.first?[1]));
-        "estimate.first_channel": "Its channel" = |of| of.estimate.and_then(|found| Some(found.first?[2]));
-        "truth_passes": "Number of passes that the truth is the mean of; null for an exact truth" = |of| of.truth_passes;
-        "comparison.passes": "Number of passes of the reference" = |of| comparison(of, |found| found.passes);
-        "comparison.method": "Test of equal distributions: permutation, signs or none" = |of| comparison(of, |found| found.method);
-        "comparison.permutations": "Number of random permutations" = |of| comparison(of, |found| found.permutations);
-        "comparison.p": "Smallest p-value of all tiles and the whole together, for equal distributions" = |of| comparison(of, |found| found.p);
-        "comparison.is_same_distribution": "Whether equal distributions are claimed" = |of| comparison(of, |found| found.is_same_distribution);
-        "comparison.spread": "Variance over that of the reference" = |of| of.comparison.as_ref().and_then(|found| found.spread);
-        "comparison.spread_p": "p-value of that ratio for equal distributions" = |of| comparison(of, |found| found.spread_p);
-        "comparison.kurtosis": "Largest kurtosis of the smallest tiles, as measured" = |of| of.comparison.as_ref().and_then(|found| found.kurtosis);
-        "whole": "Whole picture, an entry per channel, with the columns of `tiles.csv`" = |of| tiles(&of.whole);
-        "counts.tiles": "Number of all tiles, in each channel" = |of| of.counts.tiles;
-        "counts.pass": "Number that pass" = |of| of.counts.pass;
-        "counts.fail": "Number that fail, by Holm" = |of| of.counts.fail;
-        "counts.listed": "Number on the list of suspects, by e-BH" = |of| of.counts.listed;
-        "worst": "Tiles with the most evidence against them, with the columns of `tiles.csv`" = |of| tiles(&of.worst);
+    #[test]
+    fn every_field_has_a_meaning() {
+        let size = Size { rows: 1, columns: 2, channels: 1 };
+        let stack = Stack::new(2, size, vec![0.0, 1.0, 1.0, 0.0]).expect("a stack");
+        let claim = Claim::of_truth(Level::All(0.5));
+        let judged = judge(&stack, &claim, &Options::default()).expect("a judgement");
+        let judgement = Judgement {
+            refuted_by: Some(Refuted { pass: 0, row: 0, column: 0, channel: 0, value: f64::NAN }),
+            variance: Some(Variance {
+                about_truth: 1.0,
+                about_mean: 1.0,
+                margin: 1.0,
+                ln_e: 0.0,
+                limit: 1.0,
+                is_refuted: false,
+                is_too_large: false,
+            }),
+            estimate: Some(Estimate {
+                passes: 2,
+                kurtosis: 3.0,
+                is_given: false,
+                negative: 0,
+                unknown: 0,
+                first: None,
+            }),
+            comparison: Some(Comparison {
+                passes: 2,
+                method: "none",
+                permutations: 0,
+                p: 1.0,
+                is_same_distribution: false,
+                spread: None,
+                spread_p: 1.0,
+                kurtosis: None,
+            }),
+            ..judged
+        };
+        let written = json(&judgement).expect("JSON");
+        let value = serde_json::from_str(&written).expect("JSON");
+        let mut meanings: Vec<_> = MEANINGS.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let mut names = names("", &value);
+        meanings.sort();
+        names.sort();
+        assert_eq!(names, meanings);
     }
 }
