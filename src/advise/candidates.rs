@@ -89,7 +89,7 @@ pub fn listed(base: &Case, rays: &[Body]) -> Result<Vec<Candidate>, CaseError> {
     let title = forms::title(problem, settings);
     let form =
         estimators::catalogues().into_iter().find(|form| Some(&form.title) == title.as_ref());
-    let names = form.iter().flat_map(|form| form.list.pages.iter().map(Page::name));
+    let names = form.iter().flat_map(|form| form.pages.iter().map(Page::name));
     let mut all: Vec<Candidate> = names.map(|name| Candidate::new(&name, "")).collect();
     if title.as_deref() == Some("transmittance") {
         all.extend(of_transmittance(rays.len()));

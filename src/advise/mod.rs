@@ -33,14 +33,11 @@ pub use costs::Costs;
 pub use row::{Group, Row};
 
 /// The manual of advice.
-pub const CATALOGUE: PageList = PageList {
-    name: "advice",
-    pages: &[Page { module: "advise", source: include_str!("mod.rs") }],
-};
+pub const CATALOGUE: &[Page] = &[Page { module: "advise", source: include_str!("mod.rs") }];
 
 use crate::case::{CaseError, Spec};
 use costs::Prices;
-use media::catalogue::{Page, PageList};
+use media::catalogue::Page;
 use profile::Profile;
 use study::Study;
 use theory::collisions::Collisions;

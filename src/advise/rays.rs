@@ -41,7 +41,7 @@ pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Bod
     let case = Case::of(&base)?;
     let body = case.scenario.body();
     let rays = spec.read(|root| {
-        let names = problems::CATALOGUE.names();
+        let names = problems::names();
         let (_, problem) = root.chosen("problem", &names)?;
         let Body::Volume { volume, .. } = &body.channels()[0] else {
             problem.fault(

@@ -13,7 +13,7 @@ use media::catalogue::Settings;
 use media::{Body, Medium};
 use theory::Prediction;
 use theory::problems::options::chosen;
-use theory::problems::{self, ProblemOption, each_problem};
+use theory::problems::{ProblemOption, each_problem};
 
 /// Largest expected number of lookups of a draw; more are a mistake in the case.
 const MAX_LOOKUPS: f64 = 1e6;
@@ -42,15 +42,9 @@ pub struct ProblemKind {
 pub type Build =
     fn(Option<&Body>, &Settings, Defaults) -> Option<(Box<dyn AnyProblem>, Estimators)>;
 
-macro_rules! kinds {
-    ($($module:ident: $($Form:ident)*,)*) => {
-        [$(vec![$(ProblemKind::of::<problems::$Form>()),*]),*]
-    };
-}
-
 /// Returns the form that settings ask for, of the problem at a position of the catalogue; `None` after a mistake.
 pub fn kind(index: usize, settings: &Settings) -> Option<ProblemKind> {
-    let mut forms = each_problem!(kinds).into_iter().nth(index)?;
+    let mut forms = each_problem!(ProblemKind::of).into_iter().nth(index)?;
     let options: Vec<_> = forms.iter().map(|form| form.options).collect();
     Some(forms.swap_remove(chosen(&options, settings)?))
 }

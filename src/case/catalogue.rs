@@ -10,7 +10,7 @@ use crate::case::spec::{CaseError, Source};
 use crate::case::{Case, suite};
 use estimators::{self, Estimated};
 use media;
-use media::catalogue::{OwnPage, OwnPages, PageList, suggestion};
+use media::catalogue::{OwnPage, OwnPages, Page, suggestion};
 use theory::problems::{MultipleScattering, Named};
 
 /// Built-in pages together with those that a program adds.
@@ -67,7 +67,7 @@ impl Catalogue {
     pub fn with(mut self, own_page: OwnPage) -> Result<Self, NameTaken> {
         let (name, part) = (own_page.page.name(), own_page.part.clone());
         let built_in = built_in().into_iter().filter(|(other, _)| *other == part);
-        let mut taken = built_in.flat_map(|(_, list)| list.pages).map(media::catalogue::Page::name);
+        let mut taken = built_in.flat_map(|(_, pages)| pages).map(Page::name);
         let own = self.own_pages.all().iter().filter(|other| other.part == part);
         if taken.any(|other| other == name) || own.map(|o| o.page.name()).any(|o| o == name) {
             return Err(NameTaken { name, part });
@@ -149,13 +149,13 @@ pub fn source(name: &str) -> Result<Source, CaseError> {
 }
 
 /// Returns the built-in lists that a program may add to, each with the name of its part of the catalogue.
-pub fn built_in() -> Vec<(String, PageList)> {
+pub fn built_in() -> Vec<(String, &'static [Page])> {
     let part = |title: &str| format!("estimators of {title}");
     let estimators =
-        estimators::catalogues().into_iter().map(|form| (part(&form.title), form.list));
+        estimators::catalogues().into_iter().map(|form| (part(&form.title), form.pages));
     let of_pictures =
-        (part(&MultipleScattering::title()), <MultipleScattering as Estimated>::CATALOGUE);
-    let media = ("media".to_owned(), media::CATALOGUE);
+        (part(&MultipleScattering::title()), <MultipleScattering as Estimated>::CATALOGUE.pages);
+    let media = ("media".to_owned(), media::CATALOGUE.pages);
     std::iter::once(media).chain(estimators).chain([of_pictures]).collect()
 }
 

@@ -58,7 +58,7 @@ fn needs_channels(problem: &str, settings: &[Entry], own_pages: &OwnPages) -> bo
     let has = |form: &FormCatalogue, name: &str| {
         let part = format!("estimators of {}", form.title);
         let own = own_pages.all().iter().filter(|own| own.part == part).map(|own| &own.page);
-        form.list.pages.iter().chain(own).any(|page| page.name() == name)
+        form.pages.iter().chain(own).any(|page| page.name() == name)
     };
     let mut names = settings.iter().filter(|entry| entry.key == "estimators").flat_map(names);
     names.any(|name| {

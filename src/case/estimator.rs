@@ -9,7 +9,7 @@ use estimators::recipes::{controls, sampling};
 use estimators::trial::Entry;
 use estimators::{Estimated, Traits};
 use media::Body;
-use media::catalogue::{Mistake, Page, Settings, Value};
+use media::catalogue::{Mistake, Settings, Value};
 use theory::problems::ProblemOption;
 
 /// An estimator as parsed, apart from its own settings, which the problem keeps.
@@ -168,19 +168,16 @@ fn reading<P: Estimated, T>(
     settings: &Settings,
     read: &dyn Fn(&Offer, &mut Keep) -> Option<T>,
 ) -> Option<(T, Entries<P>)> {
-    let built_in = P::CATALOGUE.pages;
-    let mut offer = Offer::new(P::MODULE, P::OPTIONS, built_in);
-    let mut own: Vec<EstimatorReader<P>> = Vec::new();
-    for (page, reader) in settings.own_pages().of::<EstimatorReader<P>>() {
+    let own_pages = settings.own_pages().of::<EstimatorReader<P>>();
+    let mut offer = Offer { problem: P::MODULE, options: P::OPTIONS, names: Vec::new() };
+    let mut readers = Vec::new();
+    for (page, reader) in P::CATALOGUE.entries().chain(own_pages) {
         offer.names.push(page.name());
-        own.push(*reader);
+        readers.push(reader);
     }
     let mut entries = Vec::new();
     let found = read(&offer, &mut |index, settings| {
-        let entry = match index.checked_sub(built_in.len()) {
-            None => P::read_estimator(index, settings)?,
-            Some(place) => own[place](settings)?,
-        };
+        let entry = readers[index].0(settings)?;
         let traits = entry.traits();
         entries.push(entry);
         Some(traits)
@@ -189,14 +186,6 @@ fn reading<P: Estimated, T>(
 }
 
 impl Offer {
-    fn new(
-        problem: &'static str,
-        options: &'static [ProblemOption],
-        pages: &'static [Page],
-    ) -> Self {
-        Self { problem, options, names: pages.iter().map(Page::name).collect() }
-    }
-
     /// Reads `{ NAME = { … } }`: an estimator, and the common settings beside its own.
     fn read(
         &self,

@@ -13,7 +13,7 @@ use theory::problems::options::{chosen, listed};
 pub fn explain_estimator(problem: &str, own: &[ProblemOption], name: &str) -> Option<[String; 2]> {
     let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
     let has_name =
-        |form: &estimators::FormCatalogue| form.list.pages.iter().any(|page| page.name() == name);
+        |form: &estimators::FormCatalogue| form.pages.iter().any(|page| page.name() == name);
     let forms: Vec<_> = forms.filter(has_name).collect();
     let cure = |form: &estimators::FormCatalogue| {
         let without = |from: &[ProblemOption], others: &[ProblemOption]| -> Vec<ProblemOption> {

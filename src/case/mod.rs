@@ -52,10 +52,8 @@ pub use scenario::{Scenario, ScenarioAtPoint};
 pub use spec::{CaseError, Source, Spec};
 
 /// The manual of case files.
-pub const CATALOGUE: PageList = PageList {
-    name: "case files",
-    pages: &[Page { module: "case", source: include_str!("mod.rs") }, media::page!(sweep)],
-};
+pub const CATALOGUE: &[Page] =
+    &[Page { module: "case", source: include_str!("mod.rs") }, media::page!(sweep)];
 
 use checks::Tolerance;
 use std::path::PathBuf;
@@ -67,7 +65,7 @@ use crate::case::sweep::{SweepAxis, SweptQuantity, Variation};
 use estimators::Refusal;
 use media::Body;
 use media::catalogue::own_pages::{self, OwnPages};
-use media::catalogue::{Domain, Fault, Mistake, Page, PageList, Settings, Value};
+use media::catalogue::{Domain, Fault, Mistake, Page, Settings, Value};
 use numeric::digits::number;
 use numeric::rng::{Address, name_hash};
 use theory::problems;
@@ -242,7 +240,7 @@ struct Problem {
 /// Reads `expect` and `problem`, and no other key. A known field takes the place of the case's own.
 fn read_problem(root: &Settings, known: Option<&Body>) -> Option<Problem> {
     let expect_biased = read_expect(root);
-    let names = problems::CATALOGUE.names();
+    let names = problems::names();
     let (index, settings) = root.chosen("problem", &names)?;
     let kind = build::kind(index, &settings)?;
     let body = match known {

@@ -55,7 +55,7 @@ pub fn is_proportional(
     what: SweptQuantity,
     x: f64,
 ) -> bool {
-    let is_built_in = |name: &str| CATALOGUE.pages.iter().any(|page| page.name() == name);
+    let is_built_in = |name: &str| CATALOGUE.get(name).is_some();
     if name.split(", ").all(is_built_in) {
         return true;
     }

@@ -15,7 +15,7 @@ use crate::case::suite;
 use crate::render::{self, Picture};
 use crate::{advise, phase, report};
 use estimators::recipes::{controls, sampling};
-use media::catalogue::{Page, PageList, suggestion};
+use media::catalogue::{Page, suggestion};
 use theory::problems;
 
 /// Arguments of `list`.
@@ -95,21 +95,27 @@ impl TypedValueParser for Kind {
 /// Returns every page with the name of its part; pages that the program adds come last in theirs.
 pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
     let mut lists = built_in();
-    let own = [("phases", phase::CATALOGUE), ("sampling", sampling::CATALOGUE)];
-    let own = own.into_iter().chain([("controls", controls::CATALOGUE)]);
-    lists.splice(1..1, own.map(|(part, list)| (part.to_owned(), list)));
-    lists.extend([
-        ("problems".to_owned(), problems::CATALOGUE),
-        ("checks".to_owned(), checks::CATALOGUE),
-        ("reports".to_owned(), report::run::CATALOGUE),
-        ("files".to_owned(), crate::case::CATALOGUE),
-        ("files".to_owned(), render::CATALOGUE),
-        ("files".to_owned(), advise::CATALOGUE),
-    ]);
+    let named = |(part, pages): (&str, &'static [Page])| (part.to_owned(), pages);
+    let recipes = [
+        ("phases", phase::CATALOGUE.pages),
+        ("sampling", sampling::CATALOGUE.pages),
+        ("controls", controls::CATALOGUE.pages),
+    ];
+    lists.splice(1..1, recipes.map(named));
+    let others = [
+        ("problems", problems::CATALOGUE),
+        ("checks", checks::CATALOGUE.pages),
+        ("reports", report::run::CATALOGUE.pages),
+        ("reports", report::run::OPTIONAL),
+        ("files", crate::case::CATALOGUE),
+        ("files", render::CATALOGUE),
+        ("files", advise::CATALOGUE),
+    ];
+    lists.extend(others.map(named));
     let own_pages = catalogue.own_pages().all();
-    let with_own = |(part, list): (String, PageList)| {
+    let with_own = |(part, pages): (String, &'static [Page])| {
         let own = own_pages.iter().filter(|own| own.part == part).map(|own| own.page);
-        let pages = list.pages.iter().copied().chain(own);
+        let pages = pages.iter().copied().chain(own);
         pages.map(|page| (part.clone(), page)).collect::<Vec<_>>()
     };
     lists.into_iter().flat_map(with_own).collect()

@@ -51,15 +51,12 @@ use self::scene::{Request, Scene};
 use self::subject::SUBJECTS;
 use crate::case::spec::BuiltIn;
 use crate::case::{CaseError, Source, Spec};
-use media::catalogue::{OwnPages, Page, PageList, Settings};
+use media::catalogue::{OwnPages, Page, Settings};
 
 pub use record::PictureRecord;
 
 /// Manual of picture files.
-pub const CATALOGUE: PageList = PageList {
-    name: "picture files",
-    pages: &[Page { module: "picture", source: include_str!("mod.rs") }],
-};
+pub const CATALOGUE: &[Page] = &[Page { module: "picture", source: include_str!("mod.rs") }];
 
 /// Picture file that was read.
 pub struct Picture {

@@ -238,11 +238,11 @@ fn all_cases_predict_and_draw_what_they_did() {
 fn every_estimator_of_the_catalogue_is_drawn() {
     let rows = frozen().digits.rows;
     let mut missing = Vec::new();
-    for FormCatalogue { problem, title, list, .. } in estimators::catalogues() {
+    for FormCatalogue { problem, title, pages, .. } in estimators::catalogues() {
         let of_problem = |row: &&Vec<String>| row[0].split('/').next() == Some(problem.as_str());
         let drawn = rows.iter().filter(of_problem).filter(|row| row[6] != "refused");
         let names: BTreeSet<&str> = drawn.filter_map(|row| row[1].split(' ').next()).collect();
-        let all = list.pages.iter().map(Page::name);
+        let all = pages.iter().map(Page::name);
         missing.extend(all.filter(|name| !names.contains(name.as_str())).map(|name| {
             format!("{title}: {name} is in no case: add one, and freeze it with UPDATE_LOCK=1")
         }));

@@ -194,13 +194,13 @@ type Extinctions<'a> = &'a dyn Fn(&str) -> &'static [&'static str];
 fn every_extinction_of_a_page_is_one_that_sweeps_scale() {
     let fields = |name: &str| media::reader::extinctions(name, &own_pages::NONE);
     let catalogues: [(_, Extinctions); 3] = [
-        (media::CATALOGUE, &fields),
-        (sampling::CATALOGUE, &sampling::extinctions),
-        (controls::CATALOGUE, &controls::extinctions),
+        (media::CATALOGUE.pages, &fields),
+        (sampling::CATALOGUE.pages, &sampling::extinctions),
+        (controls::CATALOGUE.pages, &controls::extinctions),
     ];
     let mut seen = 0;
     for (catalogue, extinctions) in catalogues {
-        for page in catalogue.pages {
+        for page in catalogue {
             let text = Page::text(page);
             let settings = text.lines().filter(|line| line.contains("| 1/length |"));
             let written = settings.map(|line| line.split('`').nth(1).expect("a name"));

@@ -7,6 +7,8 @@
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use crate::CheckKind;
+use gate::CheckId;
 use gate::stats::chi_square;
 use theory::{self, Prediction};
 
@@ -111,8 +113,12 @@ pub fn of(
     Ok(Some(values))
 }
 
+/// The check.
+// Two values have an exact binomial distribution, which has discrete p-values.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Atoms, questions).not_uniform();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let Some(theory::Distribution::Atoms(atoms)) = &subject.prediction.distribution else {
         return Vec::new();
     };

@@ -10,6 +10,8 @@
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use crate::CheckKind;
+use gate::CheckId;
 use gate::stats::chi_square;
 use theory::Prediction;
 
@@ -43,8 +45,11 @@ fn classes(prediction: &Prediction) -> Option<Classes> {
     (!law.pmf.is_empty()).then(|| Classes { probability: law.pmf.clone() })
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Counts, questions).of_biased();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
     Question::distribution("the distribution of the lookups", classes.filter(|law| bins(law) >= 2))

@@ -15,7 +15,7 @@ use super::check::{Check, Question, Subject, Untestable};
 use super::distribution::DistributionTest;
 use super::mean::is_faint;
 use super::scalar::{Scalar, variance};
-use crate::Tolerance;
+use crate::{CheckKind, Tolerance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;
 use gate::stats::gate::GateSums;
@@ -74,8 +74,11 @@ pub fn of(
     tests.collect()
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Covariance, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let questions = scalars(subject).map(|Asked { channel, what, scalar }| {
         let answer: Box<dyn Check> = match scalar {
             Some(scalar) => Box::new(scalar),

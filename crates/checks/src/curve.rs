@@ -15,6 +15,7 @@ use super::batch::{Batch, Observe};
 use super::check::{Question, Subject, rounding_of};
 use super::distribution::DistributionTest;
 use super::scalar::{Scalar, variance};
+use crate::CheckKind;
 use estimators::DrawBuffer;
 use gate::CheckId;
 use gate::session::Quantity;
@@ -116,8 +117,11 @@ fn scale(prediction: &Prediction) -> Vec<f64> {
     prediction.channels.iter().map(|channel| 1.0 / channel.truth.value).collect()
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Curve, questions).not_uniform();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let increments = &subject.prediction.increments;
     if increments.is_empty() {
         return Vec::new();

@@ -15,6 +15,8 @@ use super::batch::Batch;
 use super::check::{Question, Subject};
 use super::distances::Classes;
 use super::distribution::DistributionTest;
+use crate::CheckKind;
+use gate::CheckId;
 use gate::stats::anderson_darling;
 use theory::Prediction;
 
@@ -39,7 +41,10 @@ pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
     Classes::of(prediction).map(Empirical)
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Depth, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     Question::distribution("the tails of the distances", of(subject.prediction))
 }

@@ -11,7 +11,8 @@
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
 use super::distribution::DistributionTest;
-use crate::normality;
+use crate::{CheckKind, normality};
+use gate::CheckId;
 use gate::stats::chi_square;
 use gate::stats::verdict::BLOCK;
 use numeric::sum::sum_in_lanes;
@@ -54,8 +55,11 @@ impl DistributionTest for BlockMeans {
     }
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Dispersion, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     let needed = normality::needed(kurtosis, channel.tails.rare_event_size);

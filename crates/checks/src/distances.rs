@@ -10,8 +10,10 @@
 use super::batch::Batch;
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use crate::CheckKind;
 use ::theory::{self, Prediction};
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::stats::chi_square;
 use numeric::digits::short;
 use numeric::fused::in_fused_code;
@@ -181,8 +183,11 @@ pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
     Some(Bins { classes, size })
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Distances, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     Question::distribution("the distribution of the distances", of(subject.prediction))
 }
 

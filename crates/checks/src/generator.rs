@@ -13,6 +13,8 @@
 
 use super::check::{Question, Subject};
 use super::distribution::{Inspected, Inspection};
+use crate::CheckKind;
+use gate::CheckId;
 use gate::stats::{correlation, ties};
 
 /// Number of blocks with streams that are compared.
@@ -26,8 +28,11 @@ const LAG: i32 = 16;
 /// Number of words that must show all bits.
 const SHORT: usize = 256;
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Generator, questions).not_uniform();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     // Streams are inspected only if draws use them.
     let random = subject
         .prediction

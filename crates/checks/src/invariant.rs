@@ -10,7 +10,9 @@
 
 use super::always::Always;
 use super::check::{Question, Subject, rounding};
+use crate::CheckKind;
 use estimators::DrawBuffer;
+use gate::CheckId;
 
 const LANES: usize = 8;
 
@@ -36,8 +38,11 @@ fn largest(draws: &DrawBuffer) -> f64 {
     if sum.is_nan() { sum } else { most.into_iter().fold(0.0, f64::max) }
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Invariant, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     if !subject.has_invariant {
         return Vec::new();
     }

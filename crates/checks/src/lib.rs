@@ -30,7 +30,8 @@ pub mod streams;
 pub mod variance;
 
 use gate::CheckId;
-use media::catalogue::PageList;
+use media::catalogue::Registry;
+use media::registry;
 
 pub use batch::Observe;
 pub use check::{Check, Pilot, Question, Subject, rounding};
@@ -55,8 +56,8 @@ impl Tolerance {
     }
 }
 
-/// Page of the catalogue of checks.
-struct Page {
+/// Check of the catalogue, as its page declares it.
+pub struct CheckKind {
     /// The check.
     id: CheckId,
     /// Returns its questions about an experiment; none where it does not apply.
@@ -67,7 +68,7 @@ struct Page {
     is_uniform: bool,
 }
 
-impl Page {
+impl CheckKind {
     const fn new(id: CheckId, questions: fn(&Subject) -> Vec<Question>) -> Self {
         Self { id, questions, of_biased: false, is_uniform: true }
     }
@@ -83,51 +84,54 @@ impl Page {
     }
 }
 
+/// Every check, in the order of [`CheckId::ALL`].
+pub const CATALOGUE: Registry<CheckKind> = registry![
+    mean::CHECK,
+    variance::CHECK,
+    lookups::CHECK,
+    covariance::CHECK,
+    counts::CHECK,
+    atoms::CHECK,
+    distances::CHECK,
+    depth::CHECK,
+    curve::CHECK,
+    dispersion::CHECK,
+    streams::CHECK,
+    generator::CHECK,
+    resolution::CHECK,
+    invariant::CHECK,
+    numeric::CHECK,
+];
+
+// A check that only one of the two lists has, or that has another place in it, is an error of the compiler.
+const _: () = {
+    assert!(
+        CATALOGUE.values.len() == CheckId::ALL.len(),
+        "`CheckId` and `CATALOGUE` have different checks"
+    );
+    let mut place = 0;
+    while place < CheckId::ALL.len() {
+        let is_same = CATALOGUE.values[place].id as usize == CheckId::ALL[place] as usize;
+        assert!(is_same, "`CheckId` and `CATALOGUE` have different orders");
+        place += 1;
+    }
+};
+
 /// Returns all questions of all checks, in the order of the catalogue.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let asking = ALL.iter().filter(|page| page.of_biased || !subject.expect_biased);
-    let asked = asking.flat_map(|page| {
-        let expects_bias = subject.expect_biased && page.id == CheckId::Mean;
-        let questions = (page.questions)(subject).into_iter();
-        questions.map(move |question| Question { check: page.id, expects_bias, ..question })
+    let kinds = CATALOGUE.values.iter();
+    let asking = kinds.filter(|kind| kind.of_biased || !subject.expect_biased);
+    let asked = asking.flat_map(|kind| {
+        let expects_bias = subject.expect_biased && kind.id == CheckId::Mean;
+        let questions = (kind.questions)(subject).into_iter();
+        questions.map(move |question| Question { check: kind.id, expects_bias, ..question })
     });
     asked.collect()
 }
 
 /// Returns whether the p-values of a check are uniform for correct draws.
 pub fn is_uniform(check: CheckId) -> bool {
-    ALL.iter().any(|page| page.id == check && page.is_uniform)
-}
-
-/// Lists the checks: each line gives the module, which is the row in `list`, the check, and the experiments to which the check applies.
-macro_rules! checks {
-    ($($module:ident $Id:ident $($how:ident)*,)*) => {
-        /// Every check, in the order of registration.
-        pub const CATALOGUE: PageList =
-            PageList { name: "checks", pages: &[$(media::page!($module)),*] };
-
-        /// The checks, in the order of the catalogue.
-        const ALL: &[Page] = &[$(Page::new(CheckId::$Id, $module::questions)$(.$how())*),*];
-    };
-}
-
-checks! {
-    mean Mean of_biased,
-    variance Variance,
-    lookups Lookups of_biased,
-    covariance Covariance,
-    counts Counts of_biased,
-    // Two values have an exact binomial distribution, which has discrete p-values.
-    atoms Atoms not_uniform,
-    distances Distances,
-    depth Depth,
-    curve Curve not_uniform,
-    dispersion Dispersion,
-    streams Streams,
-    generator Generator not_uniform,
-    resolution Resolution not_uniform,
-    invariant Invariant,
-    numeric Numeric of_biased,
+    CATALOGUE.values.iter().any(|kind| kind.id == check && kind.is_uniform)
 }
 
 #[cfg(test)]
@@ -136,8 +140,6 @@ mod tests {
 
     #[test]
     fn pages_have_the_names_of_their_checks() {
-        let names: Vec<String> = CATALOGUE.pages.iter().map(media::catalogue::Page::name).collect();
-        assert_eq!(names, ALL.iter().map(|page| page.id.name()).collect::<Vec<_>>());
-        assert_eq!(names, CheckId::ALL.iter().map(|id| id.name()).collect::<Vec<_>>());
+        assert_eq!(CATALOGUE.names(), CheckId::ALL.iter().map(|id| id.name()).collect::<Vec<_>>());
     }
 }

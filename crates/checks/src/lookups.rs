@@ -11,12 +11,17 @@ use super::always::Always;
 use super::batch::Observe;
 use super::check::{Question, Subject};
 use super::scalar::{Scalar, variance};
+use crate::CheckKind;
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::session::Quantity;
 use theory::CountDistribution;
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Lookups, questions).of_biased();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let law = subject.prediction.lookups.as_ref().filter(|law| law.is_sharp());
     let Some(law) = law else { return Vec::new() };
     let mean = law.mean;

@@ -17,7 +17,9 @@ use super::always::Always;
 use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::scalar::{Scalar, variance};
+use crate::CheckKind;
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::session::Quantity;
 use gate::session::quantity::{MEAN_CAP, mean_floor};
 use gate::stats::verdict::FURTHEST;
@@ -40,8 +42,11 @@ fn floor(subject: &Subject, channel: &Channel) -> f64 {
     mean_floor(truth.error, truth.value.abs() * rounding_of(subject), channel.unit)
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Mean, questions).of_biased();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .map(|(index, channel)| {

@@ -4,7 +4,9 @@
 
 use super::always::Always;
 use super::check::{Question, Subject};
+use crate::CheckKind;
 use estimators::DrawBuffer;
+use gate::CheckId;
 use numeric::sum::sum_in_lanes;
 
 fn largest(draws: &DrawBuffer) -> f64 {
@@ -12,7 +14,10 @@ fn largest(draws: &DrawBuffer) -> f64 {
     draws.values.iter().map(|values| sum_in_lanes(values, |x| x * 0.0)).sum()
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Numeric, questions).of_biased();
+
 /// Returns the questions of this check.
-pub fn questions(_: &Subject) -> Vec<Question> {
+fn questions(_: &Subject) -> Vec<Question> {
     vec![Question::whole("every draw", Always::new(largest, 0.0))]
 }

@@ -13,6 +13,8 @@
 
 use super::check::{Question, Subject};
 use super::distribution::{Inspected, Inspection};
+use crate::CheckKind;
+use gate::CheckId;
 use gate::stats::ties;
 use gate::stats::verdict::BLOCK;
 use theory::{Distribution, Prediction};
@@ -20,8 +22,11 @@ use theory::{Distribution, Prediction};
 /// Smallest number of collisions that is evidence of their resolution.
 pub const MIN_COLLISIONS: usize = 100;
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Resolution, questions).not_uniform();
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let Some(resolution) = Resolution::of(subject.prediction) else { return Vec::new() };
     let look = Inspection(move |inspected: &Inspected| p_value(inspected, &resolution));
     vec![Question::whole("the resolution of the distances", look)]

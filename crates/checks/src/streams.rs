@@ -13,6 +13,8 @@
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
 use super::distribution::DistributionTest;
+use crate::CheckKind;
+use gate::CheckId;
 use gate::stats::correlation;
 use gate::stats::verdict::BLOCK;
 
@@ -60,8 +62,11 @@ impl DistributionTest for IndexSums {
     }
 }
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Streams, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     let blocks = subject.fixed / BLOCK;

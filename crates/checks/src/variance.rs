@@ -13,6 +13,8 @@ use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::mean::is_faint;
 use super::scalar::Scalar;
+use crate::CheckKind;
+use gate::CheckId;
 use gate::session::quantity::{variance_floor, variance_of_squares};
 use gate::session::{Quantity, VarianceBound};
 use theory::Channel;
@@ -20,8 +22,11 @@ use theory::Channel;
 /// A kurtosis this close to 1 makes `(X − E[X])²` constant: there is nothing left to test.
 const TWO_POINT: f64 = 1.0 + 1e-6;
 
+/// The check.
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Variance, questions);
+
 /// Returns the questions of this check.
-pub fn questions(subject: &Subject) -> Vec<Question> {
+fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .filter_map(|(index, channel)| {

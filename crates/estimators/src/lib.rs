@@ -35,7 +35,7 @@ pub mod transmittance_curve;
 pub mod trial;
 pub mod walks;
 
-use media::catalogue::{PageList, Settings};
+use media::catalogue::{Page, Registry, Settings};
 use numeric::rng::Address;
 use theory::Prediction;
 use theory::problems::{Named, ProblemOption, each_problem};
@@ -44,6 +44,7 @@ pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::{Fields, Setup};
 
 pub use crate::draw::{Draw, DrawBuffer, Request};
+pub use crate::own::EstimatorReader;
 pub use traits::{Inputs, Traits};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
@@ -105,10 +106,7 @@ pub trait Estimated: Named {
     type Fields: Fields<Self>;
 
     /// The estimators of this problem.
-    const CATALOGUE: PageList;
-
-    /// Reads the settings of the estimator at a position of the catalogue.
-    fn read_estimator(index: usize, settings: &Settings) -> Option<Box<dyn trial::Entry<Self>>>;
+    const CATALOGUE: Registry<EstimatorReader<Self>>;
 }
 
 /// The estimators of one form of a problem.
@@ -121,49 +119,31 @@ pub struct FormCatalogue {
     /// Name of the form, such as `rod with light`.
     pub title: String,
     /// The estimators.
-    pub list: PageList,
+    pub pages: &'static [Page],
 }
 
 impl FormCatalogue {
     fn of<P: Estimated>() -> Self {
-        let (problem, list) = (P::MODULE.replace('_', "-"), P::CATALOGUE);
-        Self { problem, options: P::OPTIONS, title: P::title(), list }
+        let (problem, pages) = (P::MODULE.replace('_', "-"), P::CATALOGUE.pages);
+        Self { problem, options: P::OPTIONS, title: P::title(), pages }
     }
-}
-
-macro_rules! estimators_of {
-    ($($module:ident: $($Form:ident)*,)*) => {
-        vec![$($(FormCatalogue::of::<theory::problems::$Form>()),*),*]
-    };
 }
 
 /// The estimators of every problem, form by form, in the order of the problems.
 pub fn catalogues() -> Vec<FormCatalogue> {
-    each_problem!(estimators_of)
+    each_problem!(FormCatalogue::of).into_iter().flatten().collect()
 }
 
-/// Lists the estimators of one problem. Each line gives the module, the name in case files and the row in
-/// `trueflight list`.
+/// Implements [`Estimated`] for a form of a problem by its fields and the [`registry!`](media::registry) of its estimators.
 macro_rules! estimators {
-    ($Problem:ident on $Fields:ident: $($module:ident :: $Page:ident,)*) => {
+    ($Problem:ident on $Fields:ident: $($pages:tt)+) => {
         impl $crate::Estimated for $Problem {
             type Fields = $crate::setup::$Fields;
 
-            const CATALOGUE: media::catalogue::PageList = media::catalogue::PageList {
-                name: "estimators",
-                pages: &[$(media::page!($module)),*],
+            const CATALOGUE: media::catalogue::Registry<$crate::EstimatorReader<Self>> = {
+                use $crate::EstimatorReader;
+                media::registry![EstimatorReader of $($pages)+]
             };
-
-            fn read_estimator(
-                index: usize,
-                settings: &media::catalogue::Settings,
-            ) -> Option<Box<dyn $crate::trial::Entry<Self>>> {
-                let readers = [$(|s: &media::catalogue::Settings| {
-                    <$module::$Page as $crate::Estimator<$Problem>>::read(s)
-                        .map(|page| Box::new(page) as Box<dyn $crate::trial::Entry<_>>)
-                }),*];
-                readers[index](settings)
-            }
         }
     };
 }

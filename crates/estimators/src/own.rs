@@ -4,8 +4,15 @@ use super::trial::Entry;
 use super::{Estimated, Estimator};
 use media::catalogue::{OwnPage, Page, Settings};
 
-/// Reads an estimator of problem `P` from `{ NAME = { … } }`.
-pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
+/// Reader of an estimator of problem `P` from `{ NAME = { … } }`.
+pub struct EstimatorReader<P>(pub fn(&Settings) -> Option<Box<dyn Entry<P>>>);
+
+impl<P: Estimated> EstimatorReader<P> {
+    /// The reader of a page.
+    pub const fn of<E: Estimator<P>>() -> Self {
+        Self(|settings| E::read(settings).map(|page| Box::new(page) as Box<dyn Entry<P>>))
+    }
+}
 
 /// Registers an estimator of problem `P`. It is named in case files, drawn, judged, plotted and timed like the
 /// built-in ones.
@@ -22,7 +29,6 @@ pub type EstimatorReader<P> = fn(&Settings) -> Option<Box<dyn Entry<P>>>;
 /// assert_eq!(mine.part, "estimators of transmittance");
 /// ```
 pub fn estimator<P: Estimated, E: Estimator<P>>(page: Page) -> OwnPage {
-    let read: EstimatorReader<P> =
-        |settings| E::read(settings).map(|page| Box::new(page) as Box<dyn Entry<P>>);
-    OwnPage::new(format!("estimators of {}", P::title()), page, read)
+    let reader = EstimatorReader::<P>::of::<E>();
+    OwnPage::new(format!("estimators of {}", P::title()), page, reader)
 }

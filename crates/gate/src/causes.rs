@@ -73,6 +73,31 @@ impl Place {
     }
 }
 
+/// What the failure of a check shows: its contribution to a [`Pattern`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symptom {
+    /// The mean is off.
+    Mean,
+    /// The variance is off.
+    Variance,
+    /// The mean number of lookups is off.
+    Lookups,
+    /// The numbers of lookups have another distribution.
+    LookupDistribution,
+    /// Values of one walk are wrongly correlated.
+    Correlation,
+    /// The values have another distribution.
+    Distribution,
+    /// A walk does not balance.
+    Balance,
+    /// A draw is not a finite number, or is out of its range.
+    Number,
+    /// Draws depend on each other, or random numbers repeat.
+    Dependence,
+    /// Draws or positions lack bits.
+    Resolution,
+}
+
 /// Checks of an experiment that fail, and the side of each.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools)] // one for each check that has no side
@@ -104,21 +129,21 @@ pub struct Pattern {
 impl Pattern {
     /// Adds a check that failed; `off` is the deviation, where the check has one.
     pub fn note(&mut self, check: CheckId, off: Option<f64>) {
-        match check {
-            CheckId::Mean => self.mean.note(off),
-            CheckId::Variance => self.variance.note(off),
-            CheckId::Lookups => self.lookups.note(off),
-            CheckId::Counts => {
+        match check.symptom() {
+            Symptom::Mean => self.mean.note(off),
+            Symptom::Variance => self.variance.note(off),
+            Symptom::Lookups => self.lookups.note(off),
+            Symptom::LookupDistribution => {
                 if self.lookups == Side::Right {
                     self.lookups = Side::Both;
                 }
             }
-            CheckId::Covariance | CheckId::Curve => self.curve = true,
-            CheckId::Atoms | CheckId::Distances | CheckId::Depth => self.distribution = true,
-            CheckId::Invariant => self.balance = true,
-            CheckId::Numeric => self.number = true,
-            CheckId::Dispersion | CheckId::Streams | CheckId::Generator => self.dependence = true,
-            CheckId::Resolution => self.resolution = true,
+            Symptom::Correlation => self.curve = true,
+            Symptom::Distribution => self.distribution = true,
+            Symptom::Balance => self.balance = true,
+            Symptom::Number => self.number = true,
+            Symptom::Dependence => self.dependence = true,
+            Symptom::Resolution => self.resolution = true,
         }
     }
 

@@ -1,9 +1,15 @@
-//! Names of the checks of draws.
+//! Names of the checks of draws, and what each shows where it fails.
+//!
+//! The gate makes few of these checks itself. The others stand here because findings of all checks are compared and stored as
+//! one type, and because this crate depends on none that makes them.
 
 use std::fmt;
 
+use crate::causes::Symptom;
+
+/// Lists the checks: the variant, the name, and the symptom of a failure.
 macro_rules! ids {
-    ($($(#[$about:meta])* $Id:ident $name:literal)*) => {
+    ($($(#[$about:meta])* $Id:ident $name:literal => $symptom:ident,)*) => {
         /// A check, as `trueflight list checks` explains it.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,41 +28,48 @@ macro_rules! ids {
                     $(Self::$Id => $name,)*
                 }
             }
+
+            /// What a failure of the check shows.
+            pub fn symptom(self) -> Symptom {
+                match self {
+                    $(Self::$Id => Symptom::$symptom,)*
+                }
+            }
         }
     };
 }
 
 ids! {
     /// The mean.
-    Mean "mean"
+    Mean "mean" => Mean,
     /// The variance.
-    Variance "variance"
+    Variance "variance" => Variance,
     /// The mean number of lookups.
-    Lookups "lookups"
+    Lookups "lookups" => Lookups,
     /// The covariance of two values of a draw.
-    Covariance "covariance"
+    Covariance "covariance" => Correlation,
     /// The distribution of the number of lookups.
-    Counts "counts"
+    Counts "counts" => LookupDistribution,
     /// The probabilities of single values.
-    Atoms "atoms"
+    Atoms "atoms" => Distribution,
     /// The distribution of free flights.
-    Distances "distances"
+    Distances "distances" => Distribution,
     /// The distribution of the largest optical depth.
-    Depth "depth"
+    Depth "depth" => Distribution,
     /// The curve along one walk.
-    Curve "curve"
+    Curve "curve" => Correlation,
     /// The spread of the sums of blocks.
-    Dispersion "dispersion"
+    Dispersion "dispersion" => Dependence,
     /// The sums of random streams beside each other.
-    Streams "streams"
+    Streams "streams" => Dependence,
     /// The random numbers themselves.
-    Generator "generator"
+    Generator "generator" => Dependence,
     /// Bits that draws lack.
-    Resolution "resolution"
+    Resolution "resolution" => Resolution,
     /// The balance of each walk.
-    Invariant "invariant"
+    Invariant "invariant" => Balance,
     /// Draws that are no finite numbers.
-    Numeric "numeric"
+    Numeric "numeric" => Number,
 }
 
 impl fmt::Display for CheckId {

@@ -248,7 +248,7 @@ const MAX_COORDINATE: f64 = 2_147_483_648.0;
 
 /// Checks a field of the program's own along the ray; built-in fields have checked their settings.
 fn is_extinction(settings: &Settings, key: &'static str, body: Body) -> Option<Body> {
-    let is_own = !CATALOGUE.pages.iter().any(|page| page.name() == body.name());
+    let is_own = CATALOGUE.get(body.name()).is_none();
     let medium = body.medium();
     if is_own && medium.optical_depth(medium.support()).value.is_nan() {
         let found = format!("σ_t of `{}` is negative or not finite on the ray", body.name());

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::body::{read_axis, read_bounds};
-use super::{Extinction, Facts, Field, OpticalDepth, Profile, profile};
+use super::{Extinction, Facts, Field, OpticalDepth, Profile, Reader, profile};
 use crate::catalogue::Settings;
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 use numeric::{Known, Lane, Span};
@@ -59,6 +59,11 @@ pub trait Stratified: Sized + Clone + Send + Sync + 'static {
     fn along(&self, heights: &Heights, inside: Span) -> Option<Self> {
         let _ = (heights, inside);
         None
+    }
+
+    /// Reader of media and volumes, for the list of pages.
+    fn reader() -> Reader {
+        Reader::layered::<Self>()
     }
 }
 

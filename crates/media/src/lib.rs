@@ -40,9 +40,7 @@ pub mod sines;
 mod turn;
 pub mod voxels;
 
-use std::sync::LazyLock;
-
-use crate::catalogue::PageList;
+use crate::catalogue::Registry;
 
 pub use body::Body;
 pub use field::{Facts, Field, InSpace, Smoothness};
@@ -60,33 +58,17 @@ pub type Profile = dyn OpticalDepth;
 /// A field in space, with its type erased.
 pub type Volume = dyn InSpace;
 
-/// Lists the pages by their modules. A page of one coordinate gives its type, which implements [`Stratified`]; any
-/// other page has a function `reader`.
-macro_rules! media {
-    ($($module:ident $(:: $Layered:ident)?,)*) => {
-        /// Every page, in the order of registration.
-        pub const CATALOGUE: PageList =
-            PageList { name: "media", pages: &[$($crate::page!($module)),*] };
-
-        static READERS: LazyLock<Vec<Reader>> = LazyLock::new(|| vec![$(media!(reader $module $($Layered)?)),*]);
-    };
-    (reader $module:ident $Layered:ident) => {
-        Reader::layered::<$module::$Layered>()
-    };
-    (reader $module:ident) => {
-        $module::reader()
-    };
-}
-
-media! {
-    constant::Constant,
-    piecewise_constant::PiecewiseConstant,
-    piecewise_linear::PiecewiseLinear,
-    exponential::Exponential,
-    gaussian,
-    radial,
-    sines,
-    eq21,
-    noise,
-    grid,
-}
+/// Every page, in the order of registration. A field of one coordinate has the reader of [`Stratified`]; any other page
+/// has its own.
+pub const CATALOGUE: Registry<fn() -> Reader> = registry![
+    constant::Constant::reader,
+    piecewise_constant::PiecewiseConstant::reader,
+    piecewise_linear::PiecewiseLinear::reader,
+    exponential::Exponential::reader,
+    gaussian::reader,
+    radial::reader,
+    sines::reader,
+    eq21::reader,
+    noise::reader,
+    grid::reader,
+];

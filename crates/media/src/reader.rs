@@ -1,8 +1,8 @@
 //! Choice of a field by its name in a case file, and its reader.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
-use super::{CATALOGUE, Field, Layered, OpticalDepth, Profile, READERS, Stratified, Volume};
+use super::{CATALOGUE, Field, Layered, OpticalDepth, Profile, Stratified, Volume};
 use crate::catalogue::{OwnPages, Settings};
 
 /// Reads the fields of a page from a case file.
@@ -71,6 +71,10 @@ impl Reader {
         Self { volume: Some(Box::new(read)), ..self }
     }
 }
+
+/// Readers of the built-in pages, in the order of the catalogue.
+static READERS: LazyLock<Vec<Reader>> =
+    LazyLock::new(|| CATALOGUE.values.iter().map(|reader| reader()).collect());
 
 /// The pages of media, those of the program's own last.
 fn pages(own_pages: &OwnPages) -> impl Iterator<Item = (String, &Reader)> {

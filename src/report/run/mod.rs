@@ -1,4 +1,4 @@
-//! Reports of a run: a report is one file here and one line in the list at the foot of this page.
+//! Reports of a run: a report is one file here and one line in a list at the foot of this page.
 
 pub mod anatomy_plot;
 pub mod annotations;
@@ -19,41 +19,30 @@ pub mod totals;
 
 use crate::record::Record;
 use crate::report::{Artifact, ReportError};
-use media::catalogue::PageList;
+use media::catalogue::{Page, Registry};
+use media::{page, registry};
 
 /// Renders a report's files from a record.
 pub type Report = fn(&Record) -> Result<Vec<Artifact>, ReportError>;
 
 /// Renders every report that a run writes.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let rendered: Result<Vec<_>, _> = REPORTS.iter().map(|render| render(record)).collect();
+    let rendered: Result<Vec<_>, _> =
+        CATALOGUE.values.iter().map(|render| render(record)).collect();
     Ok(rendered?.into_iter().flatten().collect())
 }
 
-/// Lists the reports: each line gives the module and its entries in both lists below. Reports after the semicolon are
-/// written only if an option asks for them.
-macro_rules! reports {
-    ($($module:ident,)*; $($asked:ident,)*) => {
-        /// Every page, in the order of registration.
-        pub const CATALOGUE: PageList =
-            PageList { name: "reports", pages: &[$(media::page!($module),)* $(media::page!($asked)),*] };
+/// Every report that a run writes, in the order of registration.
+pub const CATALOGUE: Registry<Report> = registry![
+    summary_csv::render,
+    checks_csv::render,
+    case_csv::render,
+    changes_csv::render,
+    sweep_plot::render,
+    anatomy_plot::render,
+    record_json::render,
+    html::render,
+];
 
-        /// Every report that a run writes, in the same order.
-        pub const REPORTS: &[Report] = &[$($module::render),*];
-    };
-}
-
-reports! {
-    summary_csv,
-    checks_csv,
-    case_csv,
-    changes_csv,
-    sweep_plot,
-    anatomy_plot,
-    record_json,
-    html,
-    ;
-    junit,
-    markdown,
-    annotations,
-}
+/// Pages of the reports that are written only if an option asks for them.
+pub const OPTIONAL: &[Page] = &[page!(junit), page!(markdown), page!(annotations)];

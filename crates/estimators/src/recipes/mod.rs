@@ -4,6 +4,7 @@ pub mod controls;
 pub mod sampling;
 
 use media::Body;
+use media::catalogue::Settings;
 use numeric::digits::rounded;
 use numeric::rng::Address;
 use theory::Mesh;
@@ -60,39 +61,18 @@ pub fn inequality(range: RatioRange) -> &'static str {
     }
 }
 
-/// Lists recipes that prepare a sampling extinction or a control from its settings.
-macro_rules! recipes {
-    ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {
-        /// Every recipe, in the order of registration.
-        pub const CATALOGUE: media::catalogue::PageList = media::catalogue::PageList {
-            name: $name,
-            pages: &[$(media::page!($module)),*],
-        };
+/// Recipe with settings in case files.
+pub trait FromSettings: Sized {
+    /// Settings to which its field is proportional, all together.
+    const EXTINCTIONS: &'static [&'static str] = &[];
 
-        /// Settings of a named recipe that its field is proportional to; empty for an unknown recipe.
-        pub fn extinctions(name: &str) -> &'static [&'static str] {
-            let all: &[&'static [&'static str]] = &[$($module::$Page::EXTINCTIONS),*];
-            let place = CATALOGUE.pages.iter().position(|page| page.name() == name);
-            place.map_or(&[], |place| all[place])
-        }
-
-        /// Reads `NAME = { … }`. The body is `None` after a mistake in it: checks that depend on it are skipped.
-        pub fn read(
-            settings: &media::catalogue::Settings,
-            body: Option<&media::Body>,
-        ) -> Option<Box<dyn $Trait>> {
-            let names: Vec<String> =
-                CATALOGUE.pages.iter().map(media::catalogue::Page::name).collect();
-            let (index, recipe) = settings.choice(&names)?;
-            let readers = [$(
-                |s: &media::catalogue::Settings, b: Option<&media::Body>| {
-                    $module::$Page::read(s, b).map(|page| Box::new(page) as Box<dyn $Trait>)
-                }
-            ),*];
-            let read = readers[index](&recipe, body);
-            recipe.close();
-            read
-        }
-    };
+    /// Reads its own settings from `NAME = { … }`. The body is `None` after a mistake in it: checks that depend on it are
+    /// skipped.
+    fn read(settings: &Settings, body: Option<&Body>) -> Option<Self>;
 }
-use recipes;
+
+/// Reader of a recipe `R`, for σ̂ or for σ_c.
+pub struct RecipeReader<R: ?Sized> {
+    extinctions: &'static [&'static str],
+    read: fn(&Settings, Option<&Body>) -> Option<Box<R>>,
+}

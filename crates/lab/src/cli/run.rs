@@ -32,11 +32,11 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
     output::can_write(&arguments.out.join("stress"))?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     // Single precision comes after the pages.
-    let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
+    let bar = output::progress("stressing", "parts", PAGES.values.len() as u64 + 1, console);
     let run = Run { effort, seed: arguments.seed.seed };
     if !console.quiet {
         let form = if arguments.quick { "the short form" } else { "the long form" };
-        let (parts, seed) = (PAGES.len() + 1, run.seed);
+        let (parts, seed) = (PAGES.values.len() + 1, run.seed);
         output::print(&format!("stress: {parts} parts, {form}, seed {seed}\n"))?;
     }
     let found = arguments.threads.install(|| Ok(stress::all(run, &|_| bar.inc(1))))?;

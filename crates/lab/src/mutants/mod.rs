@@ -202,6 +202,7 @@ pub enum Walk {
     Control,
 }
 
+/// Lists the families. The mutants of each have the type of their problem, so that no array can hold them.
 macro_rules! families {
     ($($module:ident::$mutants:ident,)*) => {
         /// Every family: its page, and its mutants. Wrong streams come last.

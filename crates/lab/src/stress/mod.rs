@@ -95,6 +95,8 @@ mod prelude {
 
 pub use self::row::{Measure, Row};
 pub use self::table::{Effort, Run};
+use media::catalogue::Registry;
+use media::registry;
 use theory::parallel;
 
 /// Result of the stress test.
@@ -115,39 +117,31 @@ impl Stress {
     }
 }
 
-/// Lists the pages, in the order of their rows.
-macro_rules! pages {
-    ($($module:ident,)*) => {
-        /// Every page with the function that fills its rows.
-        pub const PAGES: &[(&str, fn(Run) -> Vec<Row>)] =
-            &[$((stringify!($module), $module::rows)),*];
-    };
-}
-
-pages! {
-    accumulators,
-    elementary,
-    tails,
-    generator,
-    depths,
-    geometry,
-    flights,
-    moments,
-    collided,
-    rods,
-    inside,
-    slabs,
-    walks,
-    balls,
-    infinite,
-    contents,
-    scattering,
-    scattered,
-    costs,
-    lit_rods,
-    lit_slabs,
-    spectral,
-}
+/// Every page with the function that fills its rows, in the order of the rows.
+pub const PAGES: Registry<fn(Run) -> Vec<Row>> = registry![
+    accumulators::rows,
+    elementary::rows,
+    tails::rows,
+    generator::rows,
+    depths::rows,
+    geometry::rows,
+    flights::rows,
+    moments::rows,
+    collided::rows,
+    rods::rows,
+    inside::rows,
+    slabs::rows,
+    walks::rows,
+    balls::rows,
+    infinite::rows,
+    contents::rows,
+    scattering::rows,
+    scattered::rows,
+    costs::rows,
+    lit_rods::rows,
+    lit_slabs::rows,
+    spectral::rows,
+];
 
 /// Runs the stress test; `done` receives the name of each page that is finished.
 pub fn all(run: Run, done: &(dyn Fn(&str) + Sync)) -> Stress {
@@ -155,9 +149,10 @@ pub fn all(run: Run, done: &(dyn Fn(&str) + Sync)) -> Stress {
     // At once: the last trials of a page alone would leave threads idle.
     let (rows, narrow) = rayon::join(
         || {
-            parallel::map(PAGES, |(name, rows)| {
+            let pages: Vec<_> = PAGES.entries().collect();
+            parallel::map(&pages, |(page, rows)| {
                 let found = rows(run);
-                done(name);
+                done(page.module);
                 found
             })
         },

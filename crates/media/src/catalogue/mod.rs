@@ -9,12 +9,14 @@ pub mod fixture;
 mod lists;
 pub mod own_pages;
 pub mod page;
+pub mod registry;
 pub mod settings;
 pub mod tree;
 mod words;
 
 pub use own_pages::{OwnPage, OwnPages};
-pub use page::{Page, PageList};
+pub use page::Page;
+pub use registry::Registry;
 pub use settings::{Mistake, Settings};
 pub use tree::{Domain, Entry, Fault, Node, Value};
 pub use words::suggestion;

@@ -1,4 +1,4 @@
-//! An entry of a catalogue, described by its own source file.
+//! A page of a catalogue, described by its own source file.
 
 /// A page: a name and the source file that defines it.
 #[derive(Debug, Clone, Copy)]
@@ -7,22 +7,6 @@ pub struct Page {
     pub module: &'static str,
     /// The text of the source file, or the page's text alone.
     pub source: &'static str,
-}
-
-/// A named list of pages.
-#[derive(Debug, Clone, Copy)]
-pub struct PageList {
-    /// Kind of the pages, in the plural: `media`, `estimators`.
-    pub name: &'static str,
-    /// The pages, in the order of registration.
-    pub pages: &'static [Page],
-}
-
-impl PageList {
-    /// The names in case files.
-    pub fn names(&self) -> Vec<String> {
-        self.pages.iter().map(Page::name).collect()
-    }
 }
 
 /// The page of a module beside the caller.

@@ -19,7 +19,7 @@ pub mod henyey_greenstein;
 pub mod isotropic;
 pub mod rayleigh;
 
-use crate::catalogue::{PageList, Settings};
+use crate::catalogue::{Registry, Settings};
 use numeric::Lane;
 
 /// A page of the catalogue: a phase function that depends on `cos θ` only.
@@ -43,13 +43,15 @@ pub trait PhaseFunction: Sized + Copy + Send + Sync + 'static {
     fn cosine<L: Lane>(&self, u: L) -> L;
 }
 
-/// Lists the pages: each line gives the module, the variant of [`Phase`], the name in case files and the row in
-/// `trueflight list`.
+/// Lists the pages, and makes [`Phase`] of them. Kernels inline the formulas of all pages, so that each line gives a variant of
+/// an enum, and its arms below.
 macro_rules! phases {
     ($($module:ident :: $Page:ident,)*) => {
         /// Every page, in the order of registration.
-        pub const CATALOGUE: PageList =
-            PageList { name: "phases", pages: &[$($crate::page!($module)),*] };
+        pub const CATALOGUE: Registry<fn(&Settings) -> Option<Phase>> = Registry::new(
+            &[$($crate::page!($module)),*],
+            &[$(|page| $module::$Page::read(page).map(Phase::$Page)),*],
+        );
 
         /// A phase function of the catalogue: one small type for kernels and theory alike.
         #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,27 +59,6 @@ macro_rules! phases {
         pub enum Phase { $($Page($module::$Page)),* }
 
         impl Phase {
-            /// Reads the required `phase.NAME = { … }`.
-            pub fn read(settings: &Settings) -> Option<Self> {
-                let (index, page) = settings.chosen("phase", &CATALOGUE.names())?;
-                Self::read_page(index, &page)
-            }
-
-            /// Reads `{ NAME = { … } }` of a list.
-            pub fn read_listed(table: &Settings) -> Option<Self> {
-                let (index, page) = table.choice(&CATALOGUE.names())?;
-                Self::read_page(index, &page)
-            }
-
-            fn read_page(index: usize, page: &Settings) -> Option<Self> {
-                let readers = [$(
-                    |s: &Settings| <$module::$Page as PhaseFunction>::read(s).map(Self::$Page)
-                ),*];
-                let phase = readers[index](page);
-                page.close();
-                phase
-            }
-
             /// The name in case files, and the settings if there are any.
             pub fn label(&self) -> String {
                 let (module, settings) = match self {
@@ -106,6 +87,18 @@ macro_rules! phases {
             }
         }
     };
+}
+
+impl Phase {
+    /// Reads the required `phase.NAME = { … }`.
+    pub fn read(settings: &Settings) -> Option<Self> {
+        CATALOGUE.read_key(settings, "phase", |read, page| read(page))
+    }
+
+    /// Reads `{ NAME = { … } }` of a list.
+    pub fn read_listed(table: &Settings) -> Option<Self> {
+        CATALOGUE.read(table, |read, page| read(page))
+    }
 }
 
 phases! {

@@ -20,7 +20,7 @@ pub mod transmittance;
 use fearless_simd::Level;
 
 use media::body::{MAX_CHANNELS, RayNeed};
-use media::catalogue::{Domain, PageList, Settings, Value};
+use media::catalogue::{Domain, Page, Settings, Value};
 use media::{Body, Lookups, Medium};
 
 pub use ball::{MultipleScattering, Sphere};
@@ -39,13 +39,17 @@ pub use sky::Sky;
 pub use slab::{ChromaticSlab, Slab, SpectralSlab};
 pub use transmittance::{SpectralTransmittance, Transmittance, TransmittanceCurve};
 
-/// Hands every problem with its forms to another macro, in the order of the catalogue. A form is the type of the draws
-/// that a case's options ask for; the first has no options. From the line of a problem come its page and its name in
-/// case files, and from that of a form its estimators.
+/// Lists every problem with its forms, in the order of the catalogue. A form is the type of the draws that a case's
+/// options ask for; the first has no options. From the line of a problem come its page and its name in case files, and
+/// from that of a form its estimators.
+///
+/// `each_problem!(Kind::of)` is an array of problems. Each is a `Vec` of `Kind::of::<Form>()`, one for each of its forms, in
+/// their order. No function can return it, because forms are types.
 #[macro_export]
 macro_rules! each_problem {
-    ($then:ident) => {
-        $then! {
+    ($($then:tt)+) => {
+        $crate::of_problems! {
+            $($then)+:
             transmittance: Transmittance TransmittanceCurve SpectralTransmittance,
             free_flight: FreeFlight,
             rod: Rod LitRod SpectralRod SpectralLitRod BidirectionalRod,
@@ -60,18 +64,28 @@ macro_rules! each_problem {
 }
 pub use each_problem;
 
-macro_rules! pages {
-    ($($module:ident: $($Form:ident)*,)*) => {
+/// Makes what [`each_problem!`] is asked for from its list.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! of_problems {
+    (pages: $($module:ident: $($Form:ident)*,)*) => {
         /// Every problem.
-        pub const CATALOGUE: PageList =
-            PageList { name: "problems", pages: &[$(media::page!($module)),*] };
+        pub const CATALOGUE: &[Page] = &[$(media::page!($module)),*];
 
         $($(impl Named for $Form {
             const MODULE: &'static str = stringify!($module);
         })*)*
     };
+    ($Kind:ident::$of:ident: $($module:ident: $($Form:ident)*,)*) => {
+        [$(vec![$($Kind::$of::<$crate::problems::$Form>()),*]),*]
+    };
 }
 each_problem!(pages);
+
+/// Names of the problems in case files, in the order of the catalogue.
+pub fn names() -> Vec<String> {
+    CATALOGUE.iter().map(Page::name).collect()
+}
 
 /// The name of a problem.
 pub trait Named: Problem {

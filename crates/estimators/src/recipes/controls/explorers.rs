@@ -12,7 +12,7 @@
 //! Source: Szirmay-Kalos et al. 2017, section 4, Figure 5.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Piecewise};
 
@@ -23,13 +23,10 @@ pub struct Explorers {
     octaves: Option<usize>,
 }
 
-impl Explorers {
-    /// Settings that σ_c is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &[];
-
+impl FromSettings for Explorers {
     /// Reads `{ points, octaves }`.
     #[allow(clippy::cast_possible_truncation)] // at most 100000
-    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
+    fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         let points = settings.count("points", 2..=100_000);
         let octaves = settings.optional("octaves", |key| {
             let octaves = settings.count(key, 1..=16)? as usize;

@@ -8,19 +8,15 @@
 //! Its optical depth is as exact as when it is the medium. It may exceed σ_t anywhere.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control};
 
 /// A catalogued field as a control.
 pub struct Field(Body);
 
-impl Field {
-    /// Settings that σ_c is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &[];
-
-    /// Reads `{ medium.NAME = { … } }` or `{ volume.NAME = { … } }`, like the problem itself.
-    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
+impl FromSettings for Field {
+    fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         let Some(body) = body else {
             settings.has("medium");
             settings.has("volume");

@@ -9,7 +9,7 @@
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, *Optimal control variate*.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Piecewise};
 
@@ -17,12 +17,8 @@ use media::{Body, Control, Piecewise};
 #[derive(Debug, Clone, Copy)]
 pub struct Mean;
 
-impl Mean {
-    /// Settings that σ_c is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &[];
-
-    /// Reads `{}`.
-    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
+impl FromSettings for Mean {
+    fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

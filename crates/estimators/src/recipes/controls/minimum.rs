@@ -10,7 +10,7 @@
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 4.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Piecewise};
 
@@ -18,12 +18,8 @@ use media::{Body, Control, Piecewise};
 #[derive(Debug, Clone, Copy)]
 pub struct Minimum;
 
-impl Minimum {
-    /// Settings that σ_c is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &[];
-
-    /// Reads `{}`.
-    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
+impl FromSettings for Minimum {
+    fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

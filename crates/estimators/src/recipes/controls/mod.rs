@@ -7,8 +7,9 @@ pub mod mean;
 pub mod minimum;
 pub mod none;
 
-use super::{Refusal, Site, recipes};
-use media::Control;
+use super::{FromSettings, RecipeReader, Refusal, Site};
+use media::catalogue::{Registry, Settings};
+use media::{Body, Control, registry};
 
 /// A recipe for a control: it makes σ_c for a medium.
 pub trait Recipe: Send + Sync {
@@ -45,12 +46,34 @@ pub trait Recipe: Send + Sync {
     }
 }
 
-recipes! {
-    "controls", Recipe:
+type Reader = RecipeReader<dyn Recipe>;
+
+impl Reader {
+    const fn of<P: Recipe + FromSettings + 'static>() -> Self {
+        let read = |settings: &Settings, body: Option<&Body>| {
+            P::read(settings, body).map(|page| Box::new(page) as Box<dyn Recipe>)
+        };
+        Self { extinctions: P::EXTINCTIONS, read }
+    }
+}
+
+/// Every recipe, in the order of registration.
+pub const CATALOGUE: Registry<Reader> = registry![
+    Reader of
     none::None,
     constant::Constant,
     mean::Mean,
     minimum::Minimum,
     explorers::Explorers,
     field::Field,
+];
+
+/// Reads `{ NAME = { … } }`. The body is `None` after a mistake in it: checks that depend on it are skipped.
+pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Box<dyn Recipe>> {
+    CATALOGUE.read(settings, |reader, page| (reader.read)(page, body))
+}
+
+/// Settings of a named recipe that its field is proportional to; empty for an unknown recipe.
+pub fn extinctions(name: &str) -> &'static [&'static str] {
+    CATALOGUE.get(name).map_or(&[], |reader| reader.extinctions)
 }

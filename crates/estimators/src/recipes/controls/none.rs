@@ -3,7 +3,7 @@
 //! It takes no settings. Useful to switch off a control that the case gives to all estimators.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control};
 
@@ -11,12 +11,8 @@ use media::{Body, Control};
 #[derive(Debug, Clone, Copy)]
 pub struct None;
 
-impl None {
-    /// Settings that σ_c is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &[];
-
-    /// Reads `{}`.
-    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
+impl FromSettings for None {
+    fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

@@ -7,7 +7,7 @@
 //! Free flight: `s = −ln(u)/σ̂`.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::{Domain, Settings};
 use media::{Body, Control, Majorants, Piecewise, Volume};
 
@@ -18,12 +18,10 @@ pub struct Constant {
     pub value: f64,
 }
 
-impl Constant {
-    /// Settings that σ̂ is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &["value"];
+impl FromSettings for Constant {
+    const EXTINCTIONS: &'static [&'static str] = &["value"];
 
-    /// Reads `{ value }`.
-    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
+    fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         settings.number("value", Domain::Positive).map(|value| Self { value })
     }
 }

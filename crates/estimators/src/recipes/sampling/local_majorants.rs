@@ -14,7 +14,7 @@
 //! participating media*, ACM Transactions on Graphics 29 (2010).
 
 use super::{Recipe, along_ray_only};
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Majorants, Piecewise, Volume};
 use numeric::Span;
@@ -35,13 +35,10 @@ pub enum LocalMajorants {
     Grid([usize; 3]),
 }
 
-impl LocalMajorants {
-    /// Settings that σ̂ is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &[];
-
+impl FromSettings for LocalMajorants {
     /// Reads `{ segments }` or `{ grid }`.
     #[allow(clippy::cast_possible_truncation)] // at most 65536
-    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
+    fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         match (settings.has("segments"), settings.has("grid")) {
             (true, false) => {
                 settings.count("segments", 1..=65_536).map(|n| Self::Segments(n as usize))

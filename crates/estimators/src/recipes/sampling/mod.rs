@@ -7,8 +7,9 @@ pub mod piecewise_linear;
 pub mod pilot;
 pub mod spectral;
 
-use super::{Refusal, Site, recipes};
-use media::{Control, Majorants, Piecewise, Volume};
+use super::{FromSettings, RecipeReader, Refusal, Site};
+use media::catalogue::{Registry, Settings};
+use media::{Body, Control, Majorants, Piecewise, Volume, registry};
 
 /// A recipe for a sampling extinction: it makes σ̂ for a medium and a control.
 pub trait Recipe: Send + Sync {
@@ -87,11 +88,33 @@ fn along_ray_only(label: &str) -> Refusal {
     Refusal::mismatch(needs, format!("σ̂ is given along the ray ({label})"))
 }
 
-recipes! {
-    "sampling", Recipe:
+type Reader = RecipeReader<dyn Recipe>;
+
+impl Reader {
+    const fn of<P: Recipe + FromSettings + 'static>() -> Self {
+        let read = |settings: &Settings, body: Option<&Body>| {
+            P::read(settings, body).map(|page| Box::new(page) as Box<dyn Recipe>)
+        };
+        Self { extinctions: P::EXTINCTIONS, read }
+    }
+}
+
+/// Every recipe, in the order of registration.
+pub const CATALOGUE: Registry<Reader> = registry![
+    Reader of
     constant::Constant,
     piecewise_constant::PiecewiseConstant,
     piecewise_linear::PiecewiseLinear,
     local_majorants::LocalMajorants,
     pilot::Pilot,
+];
+
+/// Reads `{ NAME = { … } }`. The body is `None` after a mistake in it: checks that depend on it are skipped.
+pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Box<dyn Recipe>> {
+    CATALOGUE.read(settings, |reader, page| (reader.read)(page, body))
+}
+
+/// Settings of a named recipe that its field is proportional to; empty for an unknown recipe.
+pub fn extinctions(name: &str) -> &'static [&'static str] {
+    CATALOGUE.get(name).map_or(&[], |reader| reader.extinctions)
 }

@@ -9,7 +9,7 @@
 //! `s = 2u/(y₀ + √(y₀² + 2ku))`.
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::piecewise_linear::read_pieces;
 use media::{Body, Control, Piecewise};
@@ -21,12 +21,10 @@ pub type PiecewiseLinear = Given<false>;
 #[derive(Debug, Clone)]
 pub struct Given<const STEPS: bool>(Piecewise);
 
-impl<const STEPS: bool> Given<STEPS> {
-    /// Settings that σ̂ is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &["values"];
+impl<const STEPS: bool> FromSettings for Given<STEPS> {
+    const EXTINCTIONS: &'static [&'static str] = &["values"];
 
-    /// Reads `{ breaks, values }` or `{ knots, values }`.
-    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
+    fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         read_pieces(settings, STEPS).map(Self)
     }
 }

@@ -15,7 +15,7 @@
 //! the last few neighboring rays").
 
 use super::Recipe;
-use crate::recipes::{Refusal, Site};
+use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::{Domain, Settings};
 use media::{Body, Control, Piecewise};
 use numeric::rng::{Address, exponential};
@@ -31,12 +31,10 @@ pub struct Pilot {
     start: Option<f64>,
 }
 
-impl Pilot {
-    /// Settings that σ̂ is proportional to, all together.
-    pub const EXTINCTIONS: &'static [&'static str] = &["start"];
+impl FromSettings for Pilot {
+    const EXTINCTIONS: &'static [&'static str] = &["start"];
 
-    /// Reads `{ rays, safety, start }`.
-    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
+    fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         let rays = settings.count_or("rays", 1..=10_000, 8);
         let safety = settings.number_or("safety", Domain::Positive, 1.2);
         let start = settings.optional("start", |key| settings.number(key, Domain::Positive));
