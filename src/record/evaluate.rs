@@ -164,13 +164,12 @@ fn answer(
 
 /// Judges the p-values of a run together.
 fn judge_distributions(plan: &Plan, answers: &mut [&mut Answer]) {
-    let p: Vec<f64> = answers.iter().filter_map(|answer| answer.finding.p).collect();
+    let p: Vec<Option<f64>> = answers.iter().map(|answer| answer.finding.p).collect();
     let rejected =
         multiplicity::holm(&p, plan.levels.distributions, plan.levels.distribution_alpha);
-    let tested = answers.iter_mut().filter_map(|answer| Some((answer.finding.p?, answer)));
-    for ((p, answer), rejected) in tested.zip(rejected) {
+    for ((answer, p), rejected) in answers.iter_mut().zip(p).zip(rejected) {
         // A p-value of NaN comes from draws that are not finite.
-        if rejected || p.is_nan() {
+        if let Some(p) = p.filter(|p| rejected || p.is_nan()) {
             answer.finding.verdict = Verdict::Fail;
             let (what, p) = (answer.finding.what.clone().into(), format!("{p:.1e}"));
             answer.reason = Some(Reason::Differs { what, p, details: String::new() });

@@ -4,6 +4,7 @@
 //! all questions of the run. Each question has an answer, a [`check::Check`]. Quantities for the gate ([`scalar`]) may
 //! stop the drawing; distributions ([`distribution`]) have a p-value on a number of draws fixed beforehand; a bound ([`always`])
 //! must hold for every draw; and an inspection ([`distribution::Inspection`]) looks at the streams of random numbers themselves.
+//! Pages with a test of a whole distribution also have it for draws of another program ([`foreign`]).
 //!
 //! From bottom to top: [`batch`], [`check`], the kinds, the pages.
 
@@ -18,6 +19,7 @@ pub mod depth;
 pub mod dispersion;
 pub mod distances;
 pub mod distribution;
+pub mod foreign;
 pub mod generator;
 pub mod invariant;
 pub mod lookups;
@@ -35,6 +37,7 @@ use media::catalogue::PageList;
 pub use batch::Observe;
 pub use check::{Check, Pilot, Question, Subject, rounding};
 pub use distribution::{DistributionTest, Inspected};
+pub use foreign::{ForeignDraws, ForeignTest};
 pub use scalar::Scalar;
 
 /// Smallest relative differences that must be detected; `None` where the case does not give them.
@@ -61,6 +64,8 @@ struct Page {
     id: CheckId,
     /// Returns its questions about an experiment; none where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
+    /// Returns its tests of foreign draws.
+    of_foreign: fn(&ForeignDraws) -> Vec<ForeignTest>,
     /// True if it also applies to experiments that a case declares biased.
     of_biased: bool,
     /// True if the p-values of correct draws are uniform; otherwise their probability to be at most p is below p.
@@ -69,7 +74,12 @@ struct Page {
 
 impl Page {
     const fn new(id: CheckId, questions: fn(&Subject) -> Vec<Question>) -> Self {
-        Self { id, questions, of_biased: false, is_uniform: true }
+        Self { id, questions, of_foreign: |_| Vec::new(), of_biased: false, is_uniform: true }
+    }
+
+    /// Applies the check to foreign draws, too.
+    const fn of_foreign(self, of_foreign: fn(&ForeignDraws) -> Vec<ForeignTest>) -> Self {
+        Self { of_foreign, ..self }
     }
 
     /// Applies the check to experiments that a case declares biased, too.
@@ -94,6 +104,14 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     asked.collect()
 }
 
+/// Returns the tests of foreign draws, in the order of the catalogue.
+pub fn of_foreign(draws: &ForeignDraws) -> Vec<(CheckId, ForeignTest)> {
+    let tests = ALL
+        .iter()
+        .flat_map(|page| (page.of_foreign)(draws).into_iter().map(|test| (page.id, test)));
+    tests.collect()
+}
+
 /// Returns whether the p-values of a check are uniform for correct draws.
 pub fn is_uniform(check: CheckId) -> bool {
     ALL.iter().any(|page| page.id == check && page.is_uniform)
@@ -101,13 +119,13 @@ pub fn is_uniform(check: CheckId) -> bool {
 
 /// Lists the checks: each line gives the module, which is the row in `list`, the check, and the experiments to which the check applies.
 macro_rules! checks {
-    ($($module:ident $Id:ident $($how:ident)*,)*) => {
+    ($($module:ident $Id:ident $($how:ident$(($value:expr))?)*,)*) => {
         /// Every check, in the order of registration.
         pub const CATALOGUE: PageList =
             PageList { name: "checks", pages: &[$(media::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
-        const ALL: &[Page] = &[$(Page::new(CheckId::$Id, $module::questions)$(.$how())*),*];
+        const ALL: &[Page] = &[$(Page::new(CheckId::$Id, $module::questions)$(.$how($($value)?))*),*];
     };
 }
 
@@ -115,17 +133,17 @@ checks! {
     mean Mean of_biased,
     variance Variance,
     lookups Lookups of_biased,
-    covariance Covariance,
-    counts Counts of_biased,
+    covariance Covariance of_foreign(covariance::of_foreign),
+    counts Counts of_biased of_foreign(counts::of_foreign),
     // Two values have an exact binomial distribution, which has discrete p-values.
-    atoms Atoms not_uniform,
-    distances Distances,
-    depth Depth,
-    curve Curve not_uniform,
+    atoms Atoms not_uniform of_foreign(atoms::of_foreign),
+    distances Distances of_foreign(distances::of_foreign),
+    depth Depth of_foreign(depth::of_foreign),
+    curve Curve not_uniform of_foreign(curve::of_foreign),
     dispersion Dispersion,
     streams Streams,
     generator Generator not_uniform,
-    resolution Resolution not_uniform,
+    resolution Resolution not_uniform of_foreign(resolution::of_foreign),
     invariant Invariant,
     numeric Numeric of_biased,
 }

@@ -17,14 +17,16 @@
 
 use super::capital::ln_mean_exp;
 
-/// Hypotheses that Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses`; those without a
-/// p-value count as 1.
-pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
-    let hypotheses = hypotheses.max(p.len());
-    let p: Vec<f64> = p.iter().map(|&p| if p.is_nan() { 1.0 } else { p }).collect();
+/// Returns for each hypothesis whether Holm's procedure rejects it at family-wise level `alpha`, out of `hypotheses` in
+/// all. A hypothesis without a p-value is never rejected.
+pub fn holm(p: &[Option<f64>], hypotheses: usize, alpha: f64) -> Vec<bool> {
+    let known = p.iter().flatten().count();
+    let hypotheses = hypotheses.max(known);
+    let size = |p: &Option<f64>| p.map_or(f64::INFINITY, |p| if p.is_nan() { 1.0 } else { p });
+    let sizes: Vec<f64> = p.iter().map(size).collect();
     let mut rejected = vec![false; p.len()];
-    for (rank, index) in order(&p).into_iter().enumerate() {
-        if p[index] > alpha / (hypotheses - rank) as f64 {
+    for (rank, index) in order(&sizes).into_iter().take(known).enumerate() {
+        if sizes[index] > alpha / (hypotheses - rank) as f64 {
             break;
         }
         rejected[index] = true;
@@ -74,6 +76,9 @@ mod tests {
     #[test]
     fn holm_steps_down_and_stops() {
         // Thresholds .0125, .0167, .025, .05: the third fails, so the fourth is never compared.
+        let holm = |p: &[f64], hypotheses, alpha| {
+            holm(&p.iter().copied().map(Some).collect::<Vec<_>>(), hypotheses, alpha)
+        };
         assert_eq!(holm(&[0.03, 0.005, 0.04, 0.013], 4, 0.05), [false, true, false, true]);
         // The same p-values among eight: .00625, .00714.
         assert_eq!(holm(&[0.03, 0.005, 0.007, 0.013], 8, 0.05), [false, true, true, false]);
@@ -81,6 +86,7 @@ mod tests {
         assert_eq!(holm(&[0.05, 0.025], 2, 0.05), [true, true]);
         assert_eq!(holm(&[], 0, 0.05), [false; 0]);
         assert_eq!(holm(&[f64::NAN, 0.02], 2, 0.05), [false, true]);
+        assert_eq!(super::holm(&[None, Some(0.04), None], 1, 0.05), [false, true, false]);
     }
 
     #[test]
