@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Holm         reject p₍₁₎ … p₍ₖ₎ while p₍ᵢ₎ ≤ α/(K + 1 − i)
-//! e-Bonferroni reject where e ≥ K/α
+//! e-Bonferroni reject where e ≥ K/α        (`gate::ln_fail`)
 //! e-BH         list the k largest, k = max{i : e₍ᵢ₎ ≥ K/(iα)}
 //! mean         (1/K) Σ e, itself an e-value of the intersection
 //! ```
@@ -16,6 +16,7 @@
 //! as 1, among the e-values as 0, and either still counts in `K`.
 
 use super::capital::ln_mean_exp;
+use super::gate::ln_fail;
 
 /// Returns for each hypothesis whether Holm's procedure rejects it at family-wise level `alpha`, out of `hypotheses` in
 /// all. A hypothesis without a p-value is never rejected.
@@ -38,16 +39,11 @@ pub fn holm(p: &[Option<f64>], hypotheses: usize, alpha: f64) -> Vec<bool> {
 /// index.
 pub fn e_benjamini_hochberg(ln_e: &[f64], alpha: f64) -> Vec<usize> {
     let mut order = order(&ln_e.iter().map(|&ln_e| -evidence(ln_e)).collect::<Vec<_>>());
-    let all = e_bonferroni_threshold(ln_e.len(), alpha);
+    let all = ln_fail(alpha, ln_e.len());
     let listed = |k: usize| evidence(ln_e[order[k - 1]]) >= all - (k as f64).ln();
     let longest = (1..=order.len()).rev().find(|&k| listed(k)).unwrap_or(0);
     order.truncate(longest);
     order
-}
-
-/// `ln(K/α)`: the minimum logarithm of one e-value among `K` for a rejection at family-wise level `α`.
-pub fn e_bonferroni_threshold(hypotheses: usize, alpha: f64) -> f64 {
-    (hypotheses.max(1) as f64 / alpha).ln()
 }
 
 /// `ln((1/K) Σ e)`; 0, no evidence, without e-values.
@@ -101,7 +97,7 @@ mod tests {
 
     #[test]
     fn thresholds_and_means() {
-        assert!((e_bonferroni_threshold(57, 1e-3) - 57_000.0f64.ln()).abs() < 1e-12);
+        assert!((ln_fail(1e-3, 57) - 57_000.0f64.ln()).abs() < 1e-12);
         let mean = mean_e_value(&[2000.0, 2000.0 + 3.0f64.ln()]);
         assert!((mean - 2000.0 - 2.0f64.ln()).abs() < 1e-12);
         assert!((mean_e_value(&[NONE, f64::NAN, 6.0f64.ln()]) - 2.0f64.ln()).abs() < 1e-15);
