@@ -1,9 +1,11 @@
 //! Tests of the whole distribution of foreign draws: those of [`checks`], with looks of their own.
 //!
 //! ```text
-//! looks    once, after all draws, if their number is known; else after 2¹¹, 2¹², 2¹³, …
+//! looks    once, after all draws, if their number is known before the first; else after 2¹¹, 2¹², 2¹³, … draws
 //! level    of look j = 0, 1, …  α/((j + 1)(j + 2)), shared by all tests by Holm; of a single look α
 //! ```
+//!
+//! No look depends on the draws.
 
 use std::borrow::Cow;
 use std::ops::Range;
