@@ -351,7 +351,7 @@ fn expected(planned: &Planned) -> u64 {
     let longest = planned.scalars().fold(planned.fixed, |longest, (_, scalar)| {
         let draws = match scalar.planned.underpowered {
             Some(_) => planned.draws,
-            None => (scalar.planned.draws * typical).ceil() as u64,
+            None => (scalar.planned.design.draws() * typical).ceil() as u64,
         };
         longest.max(draws)
     });

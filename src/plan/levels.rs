@@ -3,13 +3,9 @@
 //! 4/5 of α go to the gate, by e-Bonferroni, 1/5 to the p-values, by Holm.
 
 use crate::plan::Planned;
-use gate::session;
-use gate::stats::gate::ln_fail;
+use gate::session::{self, SIDE_SHARE, main_share};
 use gate::stats::normal;
-use gate::stats::verdict::{MISS, Verdict};
-
-/// Share of the error rate for tests of whole distributions.
-const DISTRIBUTION_SHARE: f64 = 0.2;
+use gate::stats::verdict::Verdict;
 
 /// Levels that the run's questions share, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,16 +31,17 @@ pub struct Levels {
 impl Levels {
     /// Returns the levels at which these numbers of scalars, distributions and declared biases share α.
     pub fn new(alpha: f64, [scalars, distributions, biased]: [usize; 3]) -> Self {
-        let share = alpha * (1.0 - DISTRIBUTION_SHARE) / scalars.max(1) as f64;
+        let gate_alpha = main_share(1) * alpha;
+        let session::Levels { ln_fail, ln_pass } = session::Levels::new(gate_alpha, scalars);
         Self {
             scalars,
             distributions,
             biased,
-            ln_fail: ln_fail(alpha * (1.0 - DISTRIBUTION_SHARE), scalars),
-            ln_biased: ln_fail(alpha, biased),
-            ln_pass: -MISS.ln(),
-            distribution_alpha: alpha * DISTRIBUTION_SHARE,
-            z: normal::two_sided(share),
+            ln_fail,
+            ln_biased: session::Levels::new(alpha, biased).ln_fail,
+            ln_pass,
+            distribution_alpha: SIDE_SHARE * alpha,
+            z: normal::two_sided(gate_alpha / scalars.max(1) as f64),
         }
     }
 

@@ -108,7 +108,7 @@ fn answers(plan: &Plan, of: &DrawnExperiment) -> Vec<Answer> {
     let both = planned.questions.iter().zip(&drawn.totals);
     let found = both.map(|(question, total)| answer(plan, of, ready, question, total));
     let mut answers: Vec<Answer> = found.collect();
-    qualify_means(plan, planned, &mut answers);
+    qualify_means(planned, &mut answers);
     if planned.expect_biased {
         show_anywhere(&mut answers);
     }
@@ -164,13 +164,12 @@ fn answer(
 
 /// Judges the p-values of a run together.
 fn judge_distributions(plan: &Plan, answers: &mut [&mut Answer]) {
-    let p: Vec<f64> = answers.iter().filter_map(|answer| answer.finding.p).collect();
+    let p: Vec<Option<f64>> = answers.iter().map(|answer| answer.finding.p).collect();
     let rejected =
         multiplicity::holm(&p, plan.levels.distributions, plan.levels.distribution_alpha);
-    let tested = answers.iter_mut().filter_map(|answer| Some((answer.finding.p?, answer)));
-    for ((p, answer), rejected) in tested.zip(rejected) {
+    for ((answer, p), rejected) in answers.iter_mut().zip(p).zip(rejected) {
         // A p-value of NaN comes from draws that are not finite.
-        if rejected || p.is_nan() {
+        if let Some(p) = p.filter(|p| rejected || p.is_nan()) {
             answer.finding.verdict = Verdict::Fail;
             let (what, p) = (answer.finding.what.clone().into(), format!("{p:.1e}"));
             answer.reason = Some(Reason::Differs { what, p, details: String::new() });
@@ -178,37 +177,30 @@ fn judge_distributions(plan: &Plan, answers: &mut [&mut Answer]) {
     }
 }
 
-/// Combines the verdict on a mean with that on the variance of its channel.
-///
-/// A mean passes if its variance does, could not be tested, or is that of pilot draws. If the variance is refuted as
-/// too small, a mean that is off only in units of that variance does not fail: with the spread of the draws it would
-/// not.
-fn qualify_means(plan: &Plan, planned: &Planned, answers: &mut [Answer]) {
-    let variances = answers.iter().filter(|answer| answer.is(CheckId::Variance));
-    let variances = variances.map(|answer| &answer.finding);
-    let variances: Vec<Finding> =
-        variances.filter(|variance| variance.verdict != Verdict::Pass).cloned().collect();
+/// Combines the verdict on each mean with that on the variance of its channel, see [`session::beside_variance`]. The
+/// variance of pilot draws cannot be tested.
+fn qualify_means(planned: &Planned, answers: &mut [Answer]) {
+    let open =
+        |answer: &&Answer| answer.is(CheckId::Variance) && answer.finding.verdict != Verdict::Pass;
+    let variances = answers
+        .iter()
+        .filter(open)
+        .map(|Answer { finding, .. }| (finding.channel.clone(), (finding.verdict, finding.gate)));
     let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
-    let is_piloted =
-        |name: &str| channels.iter().any(|c| c.pilot_variance_allowed && c.name == name);
-    for answer in answers.iter_mut().filter(|answer| answer.is(CheckId::Mean)) {
-        let mean = &mut answer.finding;
-        let variance = variances.iter().find(|variance| variance.channel == mean.channel);
-        let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {
-            (Verdict::Pass, Some(variance)) if variance.verdict != Verdict::Underpowered => {
-                (Verdict::Inconclusive, Reason::VarianceOpen)
-            }
-            (Verdict::Pass, Some(_)) => (Verdict::Pass, Reason::VarianceAssumed),
-            (Verdict::Pass, None) if !mean.expects_bias && is_piloted(&mean.channel) => {
-                (Verdict::Pass, Reason::VarianceAssumed)
-            }
-            (Verdict::Fail, Some(variance)) if rests_on(plan, mean, variance) => {
-                (Verdict::Inconclusive, Reason::RestsOnVariance("the mean".into()))
-            }
-            _ => continue,
-        };
-        mean.verdict = verdict;
-        answer.reason = Some(reason);
+    let pilots = channels.iter().filter(|channel| channel.pilot_variance_allowed);
+    let pilots = pilots.map(|channel| (channel.name.clone(), (Verdict::Underpowered, None)));
+    let variances: Vec<_> = variances.chain(pilots).collect();
+    let is_mean = |answer: &&mut Answer| answer.is(CheckId::Mean) && !answer.finding.expects_bias;
+    for Answer { finding: mean, reason } in answers.iter_mut().filter(is_mean) {
+        let variance = variances.iter().find(|(channel, _)| *channel == mean.channel);
+        let is_off =
+            |variance: &_| mean.gate.is_none_or(|mean| session::is_off_by_itself(&mean, variance));
+        let verdict = variance.and_then(|&(_, variance)| {
+            session::beside_variance("the mean", mean.verdict, variance, is_off)
+        });
+        if let Some((verdict, why)) = verdict {
+            (mean.verdict, *reason) = (verdict, Some(why));
+        }
     }
 }
 
@@ -231,12 +223,6 @@ fn explain_blocks(answers: &mut [Answer]) {
         let of = answer.reason.take().map(Box::new);
         answer.reason = of.map(|of| Reason::Follows { of, from: from.into() });
     }
-}
-
-/// Returns whether a mean fails only because its variance is refuted as too small.
-fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
-    let gates = mean.gate.zip(variance.gate).filter(|_| variance.verdict == Verdict::Fail);
-    gates.is_some_and(|(mean, variance)| session::rests_on(&mean, &variance, plan.levels.ln_fail))
 }
 
 /// Counts a declared bias as shown if one point of a curve shows it.

@@ -7,13 +7,14 @@
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use super::foreign::{ANY, ForeignDraws, ForeignTest};
 use crate::CheckKind;
 use gate::CheckId;
 use gate::stats::chi_square;
 use theory::{self, Prediction};
 
 /// A draw counts as a value if it is this close to it, relative to the value's size.
-pub const SAME: f64 = 1e-9;
+const SAME: f64 = 1e-9;
 /// A draw also counts as a value if it is this close to it in units of the largest value: 1 − r is rounded, and the 0
 /// of r = 1 may be drawn as 1e-16.
 const ROUNDING: f64 = 1e-15;
@@ -93,36 +94,35 @@ impl DistributionTest for Values {
     }
 }
 
-/// Returns the test for draws that are rounded to `same`, relative to their size.
-///
-/// # Errors
-///
-/// The reason why there is no test although theory knows the values: rounding hides which one a draw is. `Ok(None)` if
-/// theory knows no values.
-pub fn of(
-    prediction: &Prediction,
-    same: f64,
-) -> Result<Option<impl DistributionTest + use<>>, String> {
-    let Some(theory::Distribution::Atoms(atoms)) = &prediction.distribution else {
-        return Ok(None);
-    };
-    let values = Values::of(atoms.clone(), same);
-    if values.is_blurred() {
-        return Err(format!("values of a draw are closer to each other than {same:.1e}, relative"));
+/// Returns the values and their probabilities, if theory knows them.
+fn atoms(prediction: &Prediction) -> Option<Vec<(f64, f64)>> {
+    match &prediction.distribution {
+        Some(theory::Distribution::Atoms(atoms)) => Some(atoms.clone()),
+        _ => None,
     }
-    Ok(Some(values))
+}
+
+/// Returns the tests of foreign draws; none if rounding hides which value a draw is.
+fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
+    let Some(atoms) = draws.in_full().and_then(atoms) else { return Vec::new() };
+    let same = draws.error_of_product().max(SAME);
+    let (what, values) = ("the distribution of the values", Values::of(atoms, same));
+    if values.is_blurred() {
+        let why = format!("values of a draw are closer to each other than {same:.1e}, relative");
+        return vec![ForeignTest { what: what.into(), test: Err(why), between: ANY }];
+    }
+    ForeignTest::of(what, Some(values), ANY)
 }
 
 /// The check.
 // Two values have an exact binomial distribution, which has discrete p-values.
-pub const CHECK: CheckKind = CheckKind::new(CheckId::Atoms, questions).not_uniform();
+pub const CHECK: CheckKind =
+    CheckKind::new(CheckId::Atoms, questions).not_uniform().of_foreign(of_foreign);
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(theory::Distribution::Atoms(atoms)) = &subject.prediction.distribution else {
-        return Vec::new();
-    };
-    let values = Values::of(atoms.clone(), SAME);
+    let Some(atoms) = atoms(subject.prediction) else { return Vec::new() };
+    let values = Values::of(atoms, SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
     Question::distribution("the shares of the values", (bins >= 2).then_some(values))
 }

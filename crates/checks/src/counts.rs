@@ -10,6 +10,7 @@
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use super::foreign::{ANY, ForeignDraws, ForeignTest};
 use crate::CheckKind;
 use gate::CheckId;
 use gate::stats::chi_square;
@@ -35,9 +36,12 @@ impl DistributionTest for Classes {
     }
 }
 
-/// Returns the test; `None` if theory does not know the distribution of the number of lookups.
-pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
-    classes(prediction)
+/// Name of the distribution in sentences.
+const WHAT: &str = "the distribution of the lookups";
+
+/// Returns whether theory knows the distribution of the number of lookups.
+pub fn is_known(prediction: &Prediction) -> bool {
+    classes(prediction).is_some()
 }
 
 fn classes(prediction: &Prediction) -> Option<Classes> {
@@ -46,11 +50,18 @@ fn classes(prediction: &Prediction) -> Option<Classes> {
 }
 
 /// The check.
-pub const CHECK: CheckKind = CheckKind::new(CheckId::Counts, questions).of_biased();
+pub const CHECK: CheckKind =
+    CheckKind::new(CheckId::Counts, questions).of_biased().of_foreign(of_foreign);
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
-    Question::distribution("the distribution of the lookups", classes.filter(|law| bins(law) >= 2))
+    Question::distribution(WHAT, classes.filter(|law| bins(law) >= 2))
+}
+
+/// Returns the tests of foreign draws.
+fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
+    let classes = classes(draws.prediction).filter(|_| draws.request.has_lookups);
+    ForeignTest::of(WHAT, classes, ANY)
 }

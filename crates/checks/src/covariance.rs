@@ -13,13 +13,13 @@ use std::panic::AssertUnwindSafe;
 use super::batch::{Batch, Observe};
 use super::check::{Check, Question, Subject, Untestable};
 use super::distribution::DistributionTest;
+use super::foreign::{ANY, ForeignDraws, ForeignTest};
 use super::mean::is_faint;
 use super::scalar::{Scalar, variance};
 use crate::{CheckKind, Tolerance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;
 use gate::stats::gate::GateSums;
-use theory::Prediction;
 use theory::prediction::Covariance as Predicted;
 
 /// Largest error of a covariance for which a pass is still promised, relative to the product of the standard
@@ -27,6 +27,8 @@ use theory::prediction::Covariance as Predicted;
 const CAP: f64 = 0.2;
 /// Relative error of a predicted covariance.
 const ERROR: f64 = 1e-10;
+/// Number of foreign draws that covariances are tested for, if it is not known.
+const FOREIGN: u64 = 1 << 18;
 
 /// Covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed
 /// beforehand. `P(E ≥ 1/p) ≤ p` by Markov's inequality.
@@ -50,12 +52,10 @@ impl DistributionTest for ByGate {
     }
 }
 
-/// Returns the tests of the covariances of consecutive channels among the first `values`, each with its name in words.
-pub fn of(
-    prediction: &Prediction,
-    draws: u64,
-    values: usize,
-) -> Vec<(String, impl DistributionTest + use<>)> {
+/// Returns the tests of foreign draws.
+fn of_foreign(foreign: &ForeignDraws) -> Vec<ForeignTest> {
+    let (prediction, request) = (foreign.prediction, foreign.request);
+    let draws = request.length.unwrap_or(FOREIGN);
     let subject = Subject {
         prediction,
         draws,
@@ -66,16 +66,17 @@ pub fn of(
         has_invariant: false,
         pilots: None,
     };
-    let asked = scalars(&subject).filter(|asked| asked.channel < values);
+    let asked = scalars(&subject).filter(|asked| asked.channel < request.values);
     let tests = asked.filter_map(|Asked { channel, what, scalar }| {
-        let name = &prediction.channels[channel].name;
-        Some((format!("{what} of {name}"), ByGate(AssertUnwindSafe(scalar?))))
+        let what = format!("{what} of {}", prediction.channels[channel].name).into();
+        let test = Ok(Box::new(ByGate(AssertUnwindSafe(scalar?))) as Box<dyn DistributionTest>);
+        Some(ForeignTest { what, test, between: ANY })
     });
     tests.collect()
 }
 
 /// The check.
-pub const CHECK: CheckKind = CheckKind::new(CheckId::Covariance, questions);
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Covariance, questions).of_foreign(of_foreign);
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {

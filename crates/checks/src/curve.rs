@@ -12,8 +12,9 @@
 //! independent. The supremum is the reflection principle of Brownian motion.
 
 use super::batch::{Batch, Observe};
-use super::check::{Question, Subject, rounding_of};
+use super::check::{Question, Subject, rounding, rounding_of};
 use super::distribution::DistributionTest;
+use super::foreign::{ForeignDraws, ForeignTest};
 use super::scalar::{Scalar, variance};
 use crate::CheckKind;
 use estimators::DrawBuffer;
@@ -26,6 +27,8 @@ use theory::{Increment, Prediction};
 
 /// Largest relative error of a step's variance for the asymptotic tests.
 const SHARP: f64 = 1e-3;
+/// Largest number of foreign draws, if it is not known.
+const FOREIGN: u64 = 1 << 24;
 
 /// Increments `X_j/T_j − X_{j−1}/T_{j−1}`, some of them joined.
 struct Increments {
@@ -93,7 +96,7 @@ impl DistributionTest for Increments {
 
 /// Returns the smallest number of draws for which the limits hold; `None` where theory has no steps, or their variances
 /// are too uncertain.
-pub fn needed(prediction: &Prediction) -> Option<f64> {
+fn needed(prediction: &Prediction) -> Option<f64> {
     let increments = &prediction.increments;
     let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
     let tails = prediction.channels.iter().map(|channel| channel.tails.rare_event_size);
@@ -102,14 +105,13 @@ pub fn needed(prediction: &Prediction) -> Option<f64> {
     is_sharp.then(|| (100.0 * kurtosis).max(10.0 * rare))
 }
 
-/// Returns the test of the steps for at least `draws` draws with a relative rounding error of `rounding`; `None` where
-/// theory has no steps that are larger than rounding.
-pub fn of(
-    prediction: &Prediction,
-    draws: u64,
-    rounding: f64,
-) -> Option<impl DistributionTest + use<>> {
-    Increments::of(prediction, draws, rounding)
+/// Returns the tests of foreign draws.
+fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
+    let Some(prediction) = draws.in_full() else { return Vec::new() };
+    let Some(least) = needed(prediction) else { return Vec::new() };
+    let most = draws.request.length.unwrap_or(FOREIGN);
+    let steps = Increments::of(prediction, most, draws.error_of_product().max(rounding(0.0)));
+    ForeignTest::of("the distribution along the curve", steps, [least, f64::INFINITY])
 }
 
 /// Returns `1/T_j`.
@@ -118,7 +120,8 @@ fn scale(prediction: &Prediction) -> Vec<f64> {
 }
 
 /// The check.
-pub const CHECK: CheckKind = CheckKind::new(CheckId::Curve, questions).not_uniform();
+pub const CHECK: CheckKind =
+    CheckKind::new(CheckId::Curve, questions).not_uniform().of_foreign(of_foreign);
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
@@ -128,7 +131,8 @@ fn questions(subject: &Subject) -> Vec<Question> {
     }
     let is_long = needed(subject.prediction).is_some_and(|least| subject.fixed as f64 >= least);
     if is_long {
-        let increments = of(subject.prediction, subject.fixed, rounding_of(subject));
+        let rounding = rounding_of(subject);
+        let increments = Increments::of(subject.prediction, subject.fixed, rounding);
         return Question::distribution("the curve along one walk", increments);
     }
     let scale = scale(subject.prediction);

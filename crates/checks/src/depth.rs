@@ -13,12 +13,12 @@
 
 use super::batch::Batch;
 use super::check::{Question, Subject};
-use super::distances::Classes;
+use super::distances::{Classes, unrounded};
 use super::distribution::DistributionTest;
+use super::foreign::{ForeignDraws, ForeignTest};
 use crate::CheckKind;
 use gate::CheckId;
 use gate::stats::anderson_darling;
-use theory::Prediction;
 
 struct Empirical(Classes);
 
@@ -36,15 +36,18 @@ impl DistributionTest for Empirical {
     }
 }
 
-/// Returns the test; `None` if theory does not know the distribution of the distances.
-pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
-    Classes::of(prediction).map(Empirical)
-}
-
 /// The check.
-pub const CHECK: CheckKind = CheckKind::new(CheckId::Depth, questions);
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Depth, questions).of_foreign(of_foreign);
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
-    Question::distribution("the tails of the distances", of(subject.prediction))
+    let tails = Classes::of(subject.prediction).map(Empirical);
+    Question::distribution("the tails of the distances", tails)
+}
+
+/// Returns the tests of foreign draws.
+fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
+    let what = "the distribution of the distances near both ends";
+    let tails = draws.in_full().and_then(Classes::of).map(Empirical);
+    ForeignTest::of(what, tails, unrounded(draws))
 }

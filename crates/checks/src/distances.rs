@@ -10,6 +10,7 @@
 use super::batch::Batch;
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use super::foreign::{ANY, ForeignDraws, ForeignTest};
 use crate::CheckKind;
 use ::theory::{self, Prediction};
 use estimators::DrawBuffer;
@@ -176,19 +177,50 @@ impl DistributionTest for Bins {
     }
 }
 
-/// Returns the test of the bins; `None` if theory does not know the distribution of the distances.
-pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
-    let classes = Classes::of(prediction)?;
-    let size = (classes.len() / BINS).max(1);
-    Some(Bins { classes, size })
+impl Bins {
+    /// Returns the bins of the predicted distribution.
+    fn of(prediction: &Prediction) -> Option<Self> {
+        let classes = Classes::of(prediction)?;
+        let size = (classes.len() / BINS).max(1);
+        Some(Self { classes, size })
+    }
 }
 
 /// The check.
-pub const CHECK: CheckKind = CheckKind::new(CheckId::Distances, questions);
+pub const CHECK: CheckKind = CheckKind::new(CheckId::Distances, questions).of_foreign(of_foreign);
+
+/// Name of the distribution in sentences.
+const WHAT: &str = "the distribution of the distances";
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
-    Question::distribution("the distribution of the distances", of(subject.prediction))
+    Question::distribution(WHAT, Bins::of(subject.prediction))
+}
+
+/// Returns the tests of foreign draws.
+fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
+    ForeignTest::of(WHAT, draws.in_full().and_then(Bins::of), unrounded(draws))
+}
+
+/// Largest shift of a class's share by rounding, in standard errors.
+const HARMLESS: f64 = 0.05;
+
+/// Returns the numbers of foreign draws for which rounding moves no end of a class by more than a twentieth of its
+/// standard error.
+pub(super) fn unrounded(draws: &ForeignDraws) -> [f64; 2] {
+    let Some(theory::Distribution::Distances { bins, from, .. }) = &draws.prediction.distribution
+    else {
+        return ANY;
+    };
+    let (classes, rounding) = ((bins.len() + 1) as f64, draws.error_of_position());
+    let width = |k: usize| bins.get(k + 1).map_or(f64::INFINITY, |next| next - bins[k]);
+    let most = |k: usize| {
+        let below = (k + 1) as f64 / classes;
+        let narrow = width(k).min(k.checked_sub(1).map_or(f64::INFINITY, width));
+        let moved = rounding * (from.abs() + bins[k]) / (narrow * classes);
+        HARMLESS * HARMLESS * below * (1.0 - below) / (moved * moved)
+    };
+    [0.0, (0..bins.len()).map(most).fold(f64::INFINITY, f64::min)]
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! all questions of the run. Each question has an answer, a [`check::Check`]. Quantities for the gate ([`scalar`]) may
 //! stop the drawing; distributions ([`distribution`]) have a p-value on a number of draws fixed beforehand; a bound ([`always`])
 //! must hold for every draw; and an inspection ([`distribution::Inspection`]) looks at the streams of random numbers themselves.
+//! Pages with a test of a whole distribution also have it for draws of another program ([`foreign`]).
 //!
 //! From bottom to top: [`batch`], [`check`], the kinds, the pages.
 
@@ -18,6 +19,7 @@ pub mod depth;
 pub mod dispersion;
 pub mod distances;
 pub mod distribution;
+pub mod foreign;
 pub mod generator;
 pub mod invariant;
 pub mod lookups;
@@ -36,6 +38,7 @@ use media::registry;
 pub use batch::Observe;
 pub use check::{Check, Pilot, Question, Subject, rounding};
 pub use distribution::{DistributionTest, Inspected};
+pub use foreign::{ForeignDraws, ForeignTest};
 pub use scalar::Scalar;
 
 /// Smallest relative differences that must be detected; `None` where the case does not give them.
@@ -62,6 +65,8 @@ pub struct CheckKind {
     id: CheckId,
     /// Returns its questions about an experiment; none where it does not apply.
     questions: fn(&Subject) -> Vec<Question>,
+    /// Returns its tests of foreign draws.
+    of_foreign: fn(&ForeignDraws) -> Vec<ForeignTest>,
     /// True if it also applies to experiments that a case declares biased.
     of_biased: bool,
     /// True if the p-values of correct draws are uniform; otherwise their probability to be at most p is below p.
@@ -70,7 +75,12 @@ pub struct CheckKind {
 
 impl CheckKind {
     const fn new(id: CheckId, questions: fn(&Subject) -> Vec<Question>) -> Self {
-        Self { id, questions, of_biased: false, is_uniform: true }
+        Self { id, questions, of_foreign: |_| Vec::new(), of_biased: false, is_uniform: true }
+    }
+
+    /// Applies the check to foreign draws, too.
+    const fn of_foreign(self, of_foreign: fn(&ForeignDraws) -> Vec<ForeignTest>) -> Self {
+        Self { of_foreign, ..self }
     }
 
     /// Applies the check to experiments that a case declares biased, too.
@@ -127,6 +137,15 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
         questions.map(move |question| Question { check: kind.id, expects_bias, ..question })
     });
     asked.collect()
+}
+
+/// Returns the tests of foreign draws, in the order of the catalogue.
+pub fn of_foreign(draws: &ForeignDraws) -> Vec<(CheckId, ForeignTest)> {
+    let tests = CATALOGUE
+        .values
+        .iter()
+        .flat_map(|kind| (kind.of_foreign)(draws).into_iter().map(|test| (kind.id, test)));
+    tests.collect()
 }
 
 /// Returns whether the p-values of a check are uniform for correct draws.

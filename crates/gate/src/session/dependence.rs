@@ -26,7 +26,7 @@ pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     let reason = Reason::Changes {
         from,
         to: change.to.map(|to| to * batch),
-        off: mean.deviation(off, inside),
+        off: mean.quantity.deviation(off, inside),
         z: change.z,
     };
     let (verdict, reason, from) = (Verdict::Fail, Some(reason), Some(from));
@@ -40,7 +40,7 @@ pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Opt
     let is_off = drift.verdict == Verdict::Pass && ln_e >= limit && mean.is_founded();
     is_off.then(|| Reason::Off {
         what: mean.quantity.what.clone(),
-        off: mean.deviation(mean.past.mean(), mean.past.draws()),
+        off: mean.quantity.deviation(mean.past.mean(), mean.past.draws()),
         remark: String::new(),
         ln_e,
         limit,

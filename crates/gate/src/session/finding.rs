@@ -16,8 +16,8 @@ use super::quantity::{Quantity, VarianceBound};
 use super::reason::{Missing, Reason};
 use super::scalar::Scalar;
 use crate::deviation::Deviation;
-use crate::stats::gate::{Decision, Design, HORIZON, PLANNED};
-use crate::stats::verdict::{BLOCK, GateFinding, Verdict};
+use crate::stats::gate::{Decision, Design};
+use crate::stats::verdict::{BLOCK, Verdict};
 
 impl Scalar {
     /// The finding.
@@ -28,19 +28,10 @@ impl Scalar {
             Some(asked) => Design::asked(self.past.mean_square(), asked, self.quantity.floor),
             None => Design::new(self.past.mean_square(), self.quantity.cap, self.quantity.floor),
         });
-        let gate = self.design.or(decided).map(|design| GateFinding {
-            tolerance: design.tolerance,
-            variance: design.variance,
-            mean: self.seen.0,
-            planned: design.draws(),
-            draws: self.seen.1,
-            ln_e: self.evidence.ln_e,
-            ln_e_limit: self.levels.ln_fail,
-            ln_p: self.evidence.ln_pass,
-            ln_p_limit: self.levels.ln_pass,
-            needed: None,
-            is_decided: self.decision != Decision::Open,
-        });
+        let gate = self
+            .design
+            .or(decided)
+            .map(|design| self.levels.finding(&design, self.evidence, self.seen, self.decision));
         ScalarFinding {
             check: self.quantity.check,
             verdict,
@@ -70,15 +61,9 @@ impl Scalar {
         Reason::UnknownSpread { what, draws, tolerance, missing }
     }
 
-    /// Deviation of the quantity from the claim, where y is `off` on average.
-    pub(super) fn deviation(&self, off: f64, draws: u64) -> Deviation {
-        let Quantity { expected, scale, unit, .. } = self.quantity;
-        Deviation { unit, ..Deviation::new(expected + scale * off, expected, draws) }
-    }
-
     /// Deviation over all draws, in z standard errors.
     fn deviation_of_all(&self, z: f64) -> Deviation {
-        self.deviation(self.past.mean(), self.past.draws()).with_z(z)
+        self.quantity.deviation(self.past.mean(), self.past.draws()).with_z(z)
     }
 
     /// The number of draws that a pass is planned for; with a range alone, for the variance that the draws show.
@@ -126,7 +111,7 @@ impl Scalar {
         let z = if self.past.kurtosis().is_finite() { z } else { f64::NAN };
         Reason::Off {
             what: self.quantity.what.clone(),
-            off: self.deviation(off, n).with_z(z),
+            off: self.quantity.deviation(off, n).with_z(z),
             remark: String::new(),
             ln_e: self.evidence.ln_e,
             limit: self.levels.ln_fail,
@@ -135,10 +120,8 @@ impl Scalar {
     }
 
     fn undecided(&self, design: &Design) -> Reason {
-        let (what, draws) = (self.quantity.what.clone(), self.seen.1);
         let planned = self.planned_draws(design);
-        let needed = if planned > draws as f64 { planned } else { planned * HORIZON / PLANNED };
-        let undecided = Reason::Undecided { what, draws, tolerance: design.tolerance, needed };
+        let undecided = self.quantity.undecided(self.seen.1, design.tolerance, planned);
         match self.obvious_z() {
             Some(z) => Reason::Both(Box::new(self.looks_off(z, None)), Box::new(undecided)),
             None => undecided,

@@ -71,7 +71,7 @@ pub use reason::{Missing, Reason, What};
 pub use scalar::{Levels, SIDE_SHARE, Scalar, main_share};
 pub use theory::{Distribution, TestRequest, Tested, Tests, Theory, TheoryClaims};
 pub use together::{AT_THE_END, Joint, LISTED, decide_together};
-pub use verdict::{Reasons, is_by_spread, rests_on};
+pub use verdict::{Reasons, beside_variance, is_by_spread, is_off_by_itself};
 
 use reading::Reading;
 use theory::Background;

@@ -12,8 +12,7 @@
 use super::quantity::Quantity;
 use super::reason::Reason;
 use super::scalar::Levels;
-use crate::deviation::Deviation;
-use crate::stats::gate::{self, Decision, Design, Evidence, GateSums, HORIZON, PLANNED, SUMS};
+use crate::stats::gate::{self, Decision, Design, Evidence, GateSums, SUMS};
 use crate::stats::verdict::{GateFinding, Verdict};
 use numeric::fused::in_fused_code;
 use numeric::sum::{Sum, sum_in_lanes, sum_of_pairs};
@@ -26,10 +25,8 @@ pub const BLOCK_SUMS: usize = SUMS + 1;
 pub struct Planned {
     /// The quantity.
     pub quantity: Quantity,
-    /// Variance, tolerance and δ.
+    /// Variance, tolerance and δ, and the number of draws that these are planned for.
     pub design: Design,
-    /// Number of draws that the tolerance is planned for.
-    pub draws: f64,
     /// Number of draws that the largest admissible tolerance needs.
     pub least: f64,
     /// Number of draws that a pass needs, where more than are planned.
@@ -121,7 +118,7 @@ impl Quantity {
             (needed > draws * (1.0 + 1e-6)).then_some(needed)
         };
         let least = needs(Design::new(variance, widest, self.floor).tolerance);
-        Planned { quantity: self, design, draws: needs(design.tolerance), least, underpowered }
+        Planned { quantity: self, design, least, underpowered }
     }
 }
 
@@ -142,29 +139,11 @@ impl Planned {
         }
     }
 
-    /// Deviation of the quantity from its expected value.
-    fn deviation(&self, trail: &Trail) -> Deviation {
-        let Quantity { expected, scale, unit, .. } = self.quantity;
-        let error = (self.design.variance / trail.draws as f64).sqrt();
-        let told = Deviation::new(expected + scale * trail.mean, expected, trail.draws);
-        Deviation { unit, ..told }.with_z(trail.mean / error)
-    }
-
     /// The numbers at the last look.
     pub fn finding(&self, trail: &Trail, levels: Levels) -> GateFinding {
-        GateFinding {
-            tolerance: self.design.tolerance,
-            variance: self.design.variance,
-            mean: trail.mean,
-            planned: self.draws,
-            draws: trail.draws,
-            ln_e: trail.evidence.ln_e,
-            ln_e_limit: levels.ln_fail,
-            ln_p: trail.evidence.ln_pass,
-            ln_p_limit: levels.ln_pass,
-            needed: self.underpowered,
-            is_decided: trail.decision != Decision::Open,
-        }
+        let seen = (trail.mean, trail.draws);
+        let found = levels.finding(&self.design, trail.evidence, seen, trail.decision);
+        GateFinding { needed: self.underpowered, ..found }
     }
 
     /// Reason why the plan is too short for a pass; `None` if it is long enough.
@@ -181,13 +160,14 @@ impl Planned {
         too_weak: Verdict,
         remark: impl FnOnce() -> String,
     ) -> (Verdict, Option<Reason>) {
-        let what = self.quantity.what.clone();
+        let (quantity, mean, draws) = (&self.quantity, trail.mean, trail.draws);
         match (trail.decision, self.too_short()) {
             (Decision::Passed, _) => (Verdict::Pass, None),
             (Decision::Failed, _) => {
+                let error = (self.design.variance / draws as f64).sqrt();
                 let off = Reason::Off {
-                    what,
-                    off: self.deviation(trail),
+                    what: quantity.what.clone(),
+                    off: quantity.deviation(mean, draws).with_z(mean / error),
                     remark: remark(),
                     ln_e: trail.evidence.ln_e,
                     limit: levels.ln_fail,
@@ -197,11 +177,8 @@ impl Planned {
             }
             (Decision::Open, Some(reason)) => (too_weak, Some(reason)),
             (Decision::Open, None) => {
-                let (draws, tolerance) = (trail.draws, self.design.tolerance);
-                let is_short = self.draws > draws as f64;
-                let needed = if is_short { self.draws } else { self.draws * HORIZON / PLANNED };
-                let undecided = Reason::Undecided { what, draws, tolerance, needed };
-                (Verdict::Inconclusive, Some(undecided))
+                let (tolerance, planned) = (self.design.tolerance, self.design.draws());
+                (Verdict::Inconclusive, Some(quantity.undecided(draws, tolerance, planned)))
             }
         }
     }

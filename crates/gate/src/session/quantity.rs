@@ -12,6 +12,10 @@
 use crate::CheckId;
 use std::borrow::Cow;
 
+use super::reason::Reason;
+use crate::deviation::Deviation;
+use crate::stats::gate::{HORIZON, PLANNED};
+
 /// Largest tolerance of a mean that is chosen without a request.
 pub const MEAN_CAP: f64 = 0.05;
 /// Largest tolerance of a variance that is chosen without a request.
@@ -117,6 +121,19 @@ impl Quantity {
     /// Returns whether its ground lets it fail, and not only pass.
     pub fn is_hard(&self) -> bool {
         self.ground != Some(VarianceBound::Shown)
+    }
+
+    /// Deviation from the expected value, where y is `off` on average.
+    pub(super) fn deviation(&self, off: f64, draws: u64) -> Deviation {
+        let Self { expected, scale, unit, .. } = *self;
+        Deviation { unit, ..Deviation::new(expected + scale * off, expected, draws) }
+    }
+
+    /// Reason where `draws` draws decide nothing about a tolerance that is planned for `planned` of them.
+    pub(super) fn undecided(&self, draws: u64, tolerance: f64, planned: f64) -> Reason {
+        let is_short = planned > draws as f64;
+        let needed = if is_short { planned } else { planned * HORIZON / PLANNED };
+        Reason::Undecided { what: self.what.clone(), draws, tolerance, needed }
     }
 
     /// V, if it is known.

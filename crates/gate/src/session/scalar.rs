@@ -15,7 +15,7 @@ use crate::stats::Powers;
 use crate::stats::betting::Aim;
 use crate::stats::capital::ln_mean_exp;
 use crate::stats::gate::{self, Decision, Design, Evidence};
-use crate::stats::verdict::MISS;
+use crate::stats::verdict::{GateFinding, MISS};
 
 /// Number of draws that a check without a planned number of draws takes, if its success is not promised.
 const UNPLANNED: f64 = 67_108_864.0;
@@ -45,6 +45,29 @@ impl Levels {
     /// Levels of one of `count` quantities that share `alpha`.
     pub fn new(alpha: f64, count: usize) -> Self {
         Self { ln_fail: gate::ln_fail(alpha, count), ln_pass: -MISS.ln() }
+    }
+
+    /// The numbers of the gate at its last look, after `draws` draws of mean y `mean`.
+    pub(super) fn finding(
+        self,
+        design: &Design,
+        evidence: Evidence,
+        (mean, draws): (f64, u64),
+        decision: Decision,
+    ) -> GateFinding {
+        GateFinding {
+            tolerance: design.tolerance,
+            variance: design.variance,
+            mean,
+            planned: design.draws(),
+            draws,
+            ln_e: evidence.ln_e,
+            ln_e_limit: self.ln_fail,
+            ln_p: evidence.ln_pass,
+            ln_p_limit: self.ln_pass,
+            needed: None,
+            is_decided: decision != Decision::Open,
+        }
     }
 }
 

@@ -2,12 +2,9 @@
 //!
 //! ```text
 //! α    3/5 to the scalars, 1/5 to the drift, 1/5 to the distribution where it is tested; else 4/5 and 1/5
-//! n    all draws, where their number is known before the first; else 2¹¹, 2¹², 2¹³, … of the first draws; look
-//!      j = 0, 1, … has a share 1/((j + 1)(j + 2)) of the level: no n depends on the draws
-//! p    the p-values of one look together, by Holm
 //! ```
 //!
-//! The tests themselves are those of a run. They need the library, and are therefore behind a trait here.
+//! The tests themselves are those of a run. They and their looks need the library, and are therefore behind a trait here.
 
 use std::fmt;
 use std::panic::{RefUnwindSafe, UnwindSafe};

@@ -72,7 +72,7 @@ impl Joint {
 /// Decides quantities that share `alpha`.
 pub fn decide_together(evidence: &[Evidence], alpha: f64) -> Vec<Joint> {
     let ln_e: Vec<f64> = evidence.iter().map(|evidence| evidence.ln_e).collect();
-    let p: Vec<f64> = ln_e.iter().map(|ln_e| (-ln_e).exp().min(1.0)).collect();
+    let p: Vec<Option<f64>> = ln_e.iter().map(|ln_e| Some((-ln_e).exp().min(1.0))).collect();
     let is_off = holm(&p, p.len(), alpha);
     let decide = |(evidence, is_off): (&Evidence, bool)| {
         let has_passed = evidence.ln_pass.iter().all(|&ln_p| ln_p >= -MISS.ln());

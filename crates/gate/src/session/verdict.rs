@@ -53,11 +53,41 @@ impl Reasons {
     }
 }
 
-/// Returns whether a failing mean relies on a variance that is refuted as too small: with the variance that the
-/// draws show it would not fail.
-pub fn rests_on(mean: &GateFinding, variance: &GateFinding, ln_fail: f64) -> bool {
+/// Returns the verdict on a mean beside that on its variance, with the reason; `None` if the variance changes nothing.
+///
+/// ```text
+/// the mean passes   pass if the variance is underpowered, on the assumption that it is right;
+///                   inconclusive if the variance fails or is inconclusive
+/// the mean fails    inconclusive if the variance is refuted as too small, and the mean is not off by itself
+/// ```
+///
+/// `variance` is the verdict on the variance with the numbers of its gate. A mean is off by itself if it also fails with
+/// the variance that the draws show. `what` is the name of the mean.
+pub fn beside_variance(
+    what: &'static str,
+    mean: Verdict,
+    variance: (Verdict, Option<GateFinding>),
+    is_off_by_itself: impl FnOnce(&GateFinding) -> bool,
+) -> Option<(Verdict, Reason)> {
+    match (mean, variance) {
+        (Verdict::Pass, (Verdict::Underpowered, _)) => {
+            Some((Verdict::Pass, Reason::VarianceAssumed))
+        }
+        (Verdict::Pass, (Verdict::Fail | Verdict::Inconclusive, _)) => {
+            Some((Verdict::Inconclusive, Reason::VarianceOpen))
+        }
+        (Verdict::Fail, (Verdict::Fail, Some(gate))) if gate.mean > 0.0 => {
+            let rests = !is_off_by_itself(&gate);
+            rests.then(|| (Verdict::Inconclusive, Reason::RestsOnVariance(what.into())))
+        }
+        _ => None,
+    }
+}
+
+/// Returns whether a mean also fails with the variance that the draws show, by the numbers of the gate on both.
+pub fn is_off_by_itself(mean: &GateFinding, variance: &GateFinding) -> bool {
     let spread = mean.variance * (1.0 + variance.mean) - mean.mean * mean.mean;
-    variance.mean > 0.0 && !gate::is_off_by_itself(mean.mean, spread, mean.draws as f64, ln_fail)
+    gate::is_off_by_itself(mean.mean, spread, mean.draws as f64, mean.ln_e_limit)
 }
 
 /// Returns whether squares about many truths at once, such as those of all pixels, are too large because of their
@@ -107,34 +137,34 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
         return;
     };
     let found = &judgement.findings[variance];
-    let is_larger = found.gate.is_some_and(|gate| gate.mean > 0.0);
-    let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
     if found.verdict != Verdict::Fail {
         return;
     }
+    let refuted = (found.verdict, found.gate);
+    let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
     // Squares are taken about the truth: where that is not the mean, they are larger by the square of the bias.
     let about_mean = judgement.variance_ratio.map_or(f64::INFINITY, |ratio| ratio - 1.0);
-    let is_by_mean = found.gate.is_some_and(|gate| about_mean <= gate.tolerance);
-    if is_larger && is_off && is_by_mean && judgement.findings[at].verdict == Verdict::Fail {
-        let off = found.gate.map_or(0.0, |gate| gate.mean);
+    let is_by_mean = |gate: &GateFinding| gate.mean > 0.0 && about_mean <= gate.tolerance;
+    let mean_fails = judgement.findings[at].verdict == Verdict::Fail;
+    if let Some(gate) = found.gate.filter(|gate| is_off && mean_fails && is_by_mean(gate)) {
         let found = &mut judgement.findings[variance];
         found.verdict = Verdict::Inconclusive;
-        found.reason = Some(Reason::SquaresByMean { about_truth: off, about_mean });
+        found.reason = Some(Reason::SquaresByMean { about_truth: gate.mean, about_mean });
         return;
     }
-    if !is_larger || is_off {
-        judgement.findings.swap(at, variance);
-        return;
+    // A mean that passes keeps its verdict, since the variance fails the draws.
+    let rests = |what, verdict: Verdict| match verdict {
+        Verdict::Fail => beside_variance(what, verdict, refuted, |_| is_off),
+        _ => None,
+    };
+    let mean = &mut judgement.findings[at];
+    if let Some((verdict, reason)) = rests("the mean", mean.verdict) {
+        (mean.verdict, mean.reason) = (verdict, Some(reason));
     }
-    let suspect = &mut judgement.findings[at];
-    if suspect.verdict == Verdict::Fail {
-        suspect.verdict = Verdict::Inconclusive;
-        suspect.reason = Some(Reason::RestsOnVariance("the mean".into()));
-    }
-    if let Some(drift) = judgement.drift.as_mut().filter(|drift| drift.verdict == Verdict::Fail) {
-        drift.verdict = Verdict::Inconclusive;
-        let what = "whether the mean changes".into();
-        drift.reason = Some(Reason::RestsOnVariance(what));
+    if let Some(drift) = &mut judgement.drift
+        && let Some((verdict, reason)) = rests("whether the mean changes", drift.verdict)
+    {
+        (drift.verdict, drift.reason) = (verdict, Some(reason));
     }
     judgement.findings.swap(at, variance);
 }

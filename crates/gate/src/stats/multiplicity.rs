@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Holm         reject p₍₁₎ … p₍ₖ₎ while p₍ᵢ₎ ≤ α/(K + 1 − i)
-//! e-Bonferroni reject where e ≥ K/α
+//! e-Bonferroni reject where e ≥ K/α        (`gate::ln_fail`)
 //! e-BH         list the k largest, k = max{i : e₍ᵢ₎ ≥ K/(iα)}
 //! mean         (1/K) Σ e, itself an e-value of the intersection
 //! ```
@@ -16,15 +16,18 @@
 //! as 1, among the e-values as 0, and either still counts in `K`.
 
 use super::capital::ln_mean_exp;
+use super::gate::ln_fail;
 
-/// Hypotheses that Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses`; those without a
-/// p-value count as 1.
-pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
-    let hypotheses = hypotheses.max(p.len());
-    let p: Vec<f64> = p.iter().map(|&p| if p.is_nan() { 1.0 } else { p }).collect();
+/// Returns for each hypothesis whether Holm's procedure rejects it at family-wise level `alpha`, out of `hypotheses` in
+/// all. A hypothesis without a p-value is never rejected.
+pub fn holm(p: &[Option<f64>], hypotheses: usize, alpha: f64) -> Vec<bool> {
+    let known = p.iter().flatten().count();
+    let hypotheses = hypotheses.max(known);
+    let size = |p: &Option<f64>| p.map_or(f64::INFINITY, |p| if p.is_nan() { 1.0 } else { p });
+    let sizes: Vec<f64> = p.iter().map(size).collect();
     let mut rejected = vec![false; p.len()];
-    for (rank, index) in order(&p).into_iter().enumerate() {
-        if p[index] > alpha / (hypotheses - rank) as f64 {
+    for (rank, index) in order(&sizes).into_iter().take(known).enumerate() {
+        if sizes[index] > alpha / (hypotheses - rank) as f64 {
             break;
         }
         rejected[index] = true;
@@ -36,16 +39,11 @@ pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
 /// index.
 pub fn e_benjamini_hochberg(ln_e: &[f64], alpha: f64) -> Vec<usize> {
     let mut order = order(&ln_e.iter().map(|&ln_e| -evidence(ln_e)).collect::<Vec<_>>());
-    let all = e_bonferroni_threshold(ln_e.len(), alpha);
+    let all = ln_fail(alpha, ln_e.len());
     let listed = |k: usize| evidence(ln_e[order[k - 1]]) >= all - (k as f64).ln();
     let longest = (1..=order.len()).rev().find(|&k| listed(k)).unwrap_or(0);
     order.truncate(longest);
     order
-}
-
-/// `ln(K/α)`: the minimum logarithm of one e-value among `K` for a rejection at family-wise level `α`.
-pub fn e_bonferroni_threshold(hypotheses: usize, alpha: f64) -> f64 {
-    (hypotheses.max(1) as f64 / alpha).ln()
 }
 
 /// `ln((1/K) Σ e)`; 0, no evidence, without e-values.
@@ -74,6 +72,9 @@ mod tests {
     #[test]
     fn holm_steps_down_and_stops() {
         // Thresholds .0125, .0167, .025, .05: the third fails, so the fourth is never compared.
+        let holm = |p: &[f64], hypotheses, alpha| {
+            holm(&p.iter().copied().map(Some).collect::<Vec<_>>(), hypotheses, alpha)
+        };
         assert_eq!(holm(&[0.03, 0.005, 0.04, 0.013], 4, 0.05), [false, true, false, true]);
         // The same p-values among eight: .00625, .00714.
         assert_eq!(holm(&[0.03, 0.005, 0.007, 0.013], 8, 0.05), [false, true, true, false]);
@@ -81,6 +82,7 @@ mod tests {
         assert_eq!(holm(&[0.05, 0.025], 2, 0.05), [true, true]);
         assert_eq!(holm(&[], 0, 0.05), [false; 0]);
         assert_eq!(holm(&[f64::NAN, 0.02], 2, 0.05), [false, true]);
+        assert_eq!(super::holm(&[None, Some(0.04), None], 1, 0.05), [false, true, false]);
     }
 
     #[test]
@@ -95,7 +97,7 @@ mod tests {
 
     #[test]
     fn thresholds_and_means() {
-        assert!((e_bonferroni_threshold(57, 1e-3) - 57_000.0f64.ln()).abs() < 1e-12);
+        assert!((ln_fail(1e-3, 57) - 57_000.0f64.ln()).abs() < 1e-12);
         let mean = mean_e_value(&[2000.0, 2000.0 + 3.0f64.ln()]);
         assert!((mean - 2000.0 - 2.0f64.ln()).abs() < 1e-12);
         assert!((mean_e_value(&[NONE, f64::NAN, 6.0f64.ln()]) - 2.0f64.ln()).abs() < 1e-15);

@@ -175,6 +175,11 @@ impl Pixels {
         is_end || variance.is_some_and(|v| FURTHEST * v.sqrt() <= self.floor(index))
     }
 
+    /// Returns whether a value is judged: not if the estimate of its variance is no number.
+    pub(super) fn is_known(&self, index: usize) -> bool {
+        self.estimate.as_ref().is_none_or(|found| !found.is_unknown[index])
+    }
+
     /// Returns whether a variance that was estimated is 0 everywhere.
     pub(super) fn is_flat(&self) -> bool {
         let estimated = self.variance.as_ref().filter(|_| self.estimate.is_some());

@@ -24,8 +24,7 @@ use gate::stats::verdict::MISS;
 
 /// Returns the evidence of the passes on a part; q as in `variance`, 0 for an exact variance.
 pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: f64) -> Tile {
-    let is_known = |i: &usize| pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[*i]);
-    let places: Vec<usize> = part.places(stack).filter(is_known).collect();
+    let places: Vec<usize> = part.places(stack).filter(|&i| pixels.is_known(i)).collect();
     let count = places.len() as f64;
     let unit = pixels.units[part.channel];
     let n = stack.passes as f64;

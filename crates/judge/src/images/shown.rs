@@ -32,9 +32,8 @@ pub(super) fn mean(stack: &Stack, pixels: &Pixels, whole: &[Tile], is_free: bool
 /// Returns the picture in a channel with its own standard error, if its bias is obvious.
 fn plain(stack: &Stack, pixels: &Pixels, whole: &Tile, is_free: bool) -> Option<Tile> {
     let channels = stack.size.channels;
-    let is_known = |i: &usize| pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[*i]);
-    let places: Vec<usize> =
-        (whole.channel..stack.size.values()).step_by(channels).filter(is_known).collect();
+    let values = (whole.channel..stack.size.values()).step_by(channels);
+    let places: Vec<usize> = values.filter(|&i| pixels.is_known(i)).collect();
     let (n, count) = (stack.passes as f64, places.len() as f64);
     let values: Vec<Vec<f64>> = if is_free {
         places
@@ -71,10 +70,7 @@ pub(super) fn is_too_large(stack: &Stack, pixels: &Pixels, ratio: f64, error: f6
         return false;
     };
     let unit = |i: usize| if pixels.estimate.is_some() { 1.0 } else { variance[i] };
-    let is_judged = |i: &usize| {
-        let is_known = pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[*i]);
-        is_known && !pixels.is_certain(*i)
-    };
+    let is_judged = |&i: &usize| pixels.is_known(i) && !pixels.is_certain(i);
     let channels = stack.size.channels;
     let mut pairs = variance::Pairs::default();
     for first in (0..stack.passes - 1).step_by(2) {

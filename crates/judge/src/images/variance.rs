@@ -267,9 +267,7 @@ pub(super) fn pairs(
     level: f64,
 ) -> Option<(Squares, f64, f64)> {
     let variance = pixels.variance.as_ref()?;
-    let is_judged = |&i: &usize| {
-        !pixels.is_certain(i) && pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[i])
-    };
+    let is_judged = |&i: &usize| !pixels.is_certain(i) && pixels.is_known(i);
     let judged: Vec<usize> = (0..stack.size.values()).filter(is_judged).collect();
     let count = judged.len() as f64;
     let claimed = judged.iter().map(|&i| variance[i]).sum::<f64>() / count;
