@@ -7,6 +7,7 @@
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use gate::CheckId;
 use gate::stats::chi_square;
 use theory::{self, Prediction};
 
@@ -118,7 +119,11 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     };
     let values = Values::of(atoms.clone(), SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
-    Question::distribution("the shares of the values", (bins >= 2).then_some(values))
+    Question::distribution(
+        CheckId::Atoms,
+        "the shares of the values",
+        (bins >= 2).then_some(values),
+    )
 }
 
 #[cfg(test)]

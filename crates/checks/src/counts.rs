@@ -10,6 +10,7 @@
 use super::batch::{Batch, each_value};
 use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
+use gate::CheckId;
 use gate::stats::chi_square;
 use theory::Prediction;
 
@@ -47,5 +48,9 @@ fn classes(prediction: &Prediction) -> Option<Classes> {
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
-    Question::distribution("the distribution of the lookups", classes.filter(|law| bins(law) >= 2))
+    Question::distribution(
+        CheckId::Counts,
+        "the distribution of the lookups",
+        classes.filter(|law| bins(law) >= 2),
+    )
 }

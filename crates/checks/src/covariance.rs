@@ -81,7 +81,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
             Some(scalar) => Box::new(scalar),
             None => Box::new(Untestable("its variance overflows".into())),
         };
-        Question::channel(channel, &what, answer)
+        Question::channel(CheckId::Covariance, channel, &what, answer)
     });
     questions.collect()
 }

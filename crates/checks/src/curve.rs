@@ -125,7 +125,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let is_long = needed(subject.prediction).is_some_and(|least| subject.fixed as f64 >= least);
     if is_long {
         let increments = of(subject.prediction, subject.fixed, rounding_of(subject));
-        return Question::distribution("the curve along one walk", increments);
+        return Question::distribution(CheckId::Curve, "the curve along one walk", increments);
     }
     let scale = scale(subject.prediction);
     let has_spread = |increment: &Increment| {
@@ -135,7 +135,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     steps
         .map(|(j, increment)| {
             let step = step(subject, j, &scale, increment);
-            Question::channel(j, STEP, Box::new(step))
+            Question::channel(CheckId::Curve, j, STEP, Box::new(step))
         })
         .collect()
 }

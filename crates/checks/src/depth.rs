@@ -15,6 +15,7 @@ use super::batch::Batch;
 use super::check::{Question, Subject};
 use super::distances::Classes;
 use super::distribution::DistributionTest;
+use gate::CheckId;
 use gate::stats::anderson_darling;
 use theory::Prediction;
 
@@ -41,5 +42,5 @@ pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    Question::distribution("the tails of the distances", of(subject.prediction))
+    Question::distribution(CheckId::Depth, "the tails of the distances", of(subject.prediction))
 }

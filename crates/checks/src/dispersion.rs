@@ -12,6 +12,7 @@ use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
 use super::distribution::DistributionTest;
 use crate::normality;
+use gate::CheckId;
 use gate::stats::chi_square;
 use gate::stats::verdict::BLOCK;
 use numeric::sum::sum_in_lanes;
@@ -62,5 +63,9 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= MIN_BLOCKS;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let means = BlockMeans { mean, scale, least: needed };
-    Question::distribution("the spread of the blocks' means", enough.then_some(means))
+    Question::distribution(
+        CheckId::Dispersion,
+        "the spread of the blocks' means",
+        enough.then_some(means),
+    )
 }

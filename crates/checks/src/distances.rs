@@ -12,6 +12,7 @@ use super::check::{Question, Subject};
 use super::distribution::DistributionTest;
 use ::theory::{self, Prediction};
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::stats::chi_square;
 use numeric::digits::short;
 use numeric::fused::in_fused_code;
@@ -183,7 +184,11 @@ pub fn of(prediction: &Prediction) -> Option<impl DistributionTest + use<>> {
 
 /// Returns the questions of this check.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    Question::distribution("the distribution of the distances", of(subject.prediction))
+    Question::distribution(
+        CheckId::Distances,
+        "the distribution of the distances",
+        of(subject.prediction),
+    )
 }
 
 #[cfg(test)]

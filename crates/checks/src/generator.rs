@@ -13,6 +13,7 @@
 
 use super::check::{Question, Subject};
 use super::distribution::{Inspected, Inspection};
+use gate::CheckId;
 use gate::stats::{correlation, ties};
 
 /// Number of blocks with streams that are compared.
@@ -37,7 +38,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     if !random {
         return Vec::new();
     }
-    vec![Question::whole("the streams of random numbers", Inspection(p_value))]
+    vec![Question::whole(CheckId::Generator, "the streams of random numbers", Inspection(p_value))]
 }
 
 /// Returns the words of a block as the draws use them.

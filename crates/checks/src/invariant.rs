@@ -11,6 +11,7 @@
 use super::always::Always;
 use super::check::{Question, Subject, rounding};
 use estimators::DrawBuffer;
+use gate::CheckId;
 
 const LANES: usize = 8;
 
@@ -41,5 +42,9 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     if !subject.has_invariant {
         return Vec::new();
     }
-    vec![Question::whole("the balance of each walk", Always::new(largest, rounding(0.0)))]
+    vec![Question::whole(
+        CheckId::Invariant,
+        "the balance of each walk",
+        Always::new(largest, rounding(0.0)),
+    )]
 }

@@ -89,7 +89,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let asked = asking.flat_map(|page| {
         let expects_bias = subject.expect_biased && page.id == CheckId::Mean;
         let questions = (page.questions)(subject).into_iter();
-        questions.map(move |question| Question { check: page.id, expects_bias, ..question })
+        questions.map(move |question| Question { expects_bias, ..question })
     });
     asked.collect()
 }

@@ -12,6 +12,7 @@ use super::batch::Observe;
 use super::check::{Question, Subject};
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::session::Quantity;
 use theory::CountDistribution;
 
@@ -30,14 +31,22 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
             y.extend(counts.iter().map(|&m| f64::from(m) * scale - 1.0));
         };
         let observe = Observe::Lookups(Box::new(observe));
-        Question::whole(what, Scalar::new(subject, lookups.of(mean, mean), observe))
+        Question::whole(
+            CheckId::Lookups,
+            what,
+            Scalar::new(subject, lookups.of(mean, mean), observe),
+        )
     } else {
         let largest = move |draws: &DrawBuffer| {
             let counts = draws.lookups.iter();
             counts.fold(0.0, |most: f64, &m| most.max((f64::from(m) - mean).abs()))
         };
         // The predicted number may be rounded; a draw that differs by one is far beyond that.
-        Question::whole(what, Always { is_of_lookups: true, ..Always::new(largest, 0.5) })
+        Question::whole(
+            CheckId::Lookups,
+            what,
+            Always { is_of_lookups: true, ..Always::new(largest, 0.5) },
+        )
     };
     vec![question]
 }

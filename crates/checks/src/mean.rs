@@ -18,6 +18,7 @@ use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::scalar::{Scalar, variance};
 use estimators::DrawBuffer;
+use gate::CheckId;
 use gate::session::Quantity;
 use gate::session::quantity::{MEAN_CAP, mean_floor};
 use gate::stats::verdict::FURTHEST;
@@ -45,7 +46,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .map(|(index, channel)| {
-            Question::channel(index, "the mean", answer(subject, index, channel))
+            Question::channel(CheckId::Mean, index, "the mean", answer(subject, index, channel))
         })
         .collect()
 }

@@ -5,6 +5,7 @@
 use super::always::Always;
 use super::check::{Question, Subject};
 use estimators::DrawBuffer;
+use gate::CheckId;
 use numeric::sum::sum_in_lanes;
 
 fn largest(draws: &DrawBuffer) -> f64 {
@@ -14,5 +15,5 @@ fn largest(draws: &DrawBuffer) -> f64 {
 
 /// Returns the questions of this check.
 pub fn questions(_: &Subject) -> Vec<Question> {
-    vec![Question::whole("every draw", Always::new(largest, 0.0))]
+    vec![Question::whole(CheckId::Numeric, "every draw", Always::new(largest, 0.0))]
 }

@@ -13,6 +13,7 @@
 
 use super::check::{Question, Subject};
 use super::distribution::{Inspected, Inspection};
+use gate::CheckId;
 use gate::stats::ties;
 use gate::stats::verdict::BLOCK;
 use theory::{Distribution, Prediction};
@@ -24,7 +25,7 @@ pub const MIN_COLLISIONS: usize = 100;
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(resolution) = Resolution::of(subject.prediction) else { return Vec::new() };
     let look = Inspection(move |inspected: &Inspected| p_value(inspected, &resolution));
-    vec![Question::whole("the resolution of the distances", look)]
+    vec![Question::whole(CheckId::Resolution, "the resolution of the distances", look)]
 }
 
 /// Ties among distances, in theory.

@@ -13,6 +13,7 @@
 use super::batch::Batch;
 use super::check::{Question, Subject, last_channel};
 use super::distribution::DistributionTest;
+use gate::CheckId;
 use gate::stats::correlation;
 use gate::stats::verdict::BLOCK;
 
@@ -71,5 +72,5 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let enough = enough && by_one <= MAX_BY_ONE;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let sums = IndexSums { mean, scale, kurtosis };
-    Question::distribution("the sums across streams", enough.then_some(sums))
+    Question::distribution(CheckId::Streams, "the sums across streams", enough.then_some(sums))
 }

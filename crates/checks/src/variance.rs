@@ -13,6 +13,7 @@ use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::mean::is_faint;
 use super::scalar::Scalar;
+use gate::CheckId;
 use gate::session::quantity::{variance_floor, variance_of_squares};
 use gate::session::{Quantity, VarianceBound};
 use theory::Channel;
@@ -25,7 +26,12 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .filter_map(|(index, channel)| {
-            Some(Question::channel(index, "the variance", answer(subject, index, channel)?))
+            Some(Question::channel(
+                CheckId::Variance,
+                index,
+                "the variance",
+                answer(subject, index, channel)?,
+            ))
         })
         .collect()
 }
