@@ -113,7 +113,7 @@ impl Row {
             () if score.is_bound => Group::Bounded,
             () => Group::Ranked,
         };
-        let needs = [Some(&*own).filter(|own| !own.is_empty()), bound];
+        let needs = [Some(&*own).filter(|own| !own.is_empty()), bound.as_deref()];
         let of = |what| setting.filter(|setting| setting.0 == what).map(|setting| setting.1);
         let constant = of(SweptQuantity::Sampling);
         let factor = of(SweptQuantity::SamplingScale).filter(|&factor| factor != 1.0);

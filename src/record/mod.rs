@@ -284,10 +284,10 @@ impl<'a> Row<'a> {
         format!("{}{comma}{channel}", self.experiment.name)
     }
 
-    /// Returns the reason of the verdict; without one, the notes on the case.
-    pub fn why(&self) -> String {
-        let reason = &self.values.reason;
-        if reason.is_empty() { self.case.notes.join("; ") } else { reason.clone() }
+    /// Returns the findings that gave the row its verdict.
+    pub fn deciding(&self) -> impl Iterator<Item = &'a Finding> + use<'a> {
+        let verdict = self.values.verdict;
+        self.findings().filter(move |finding| Some(finding.verdict) == verdict)
     }
 
     /// Returns the values of a quantity.

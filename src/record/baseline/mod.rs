@@ -13,6 +13,7 @@ use std::fmt::{self, Display, Formatter};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use gate::CheckId;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -101,8 +102,10 @@ pub struct Entry {
 /// The evidence of one check against the experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Name of the check and of its quantity.
-    pub check: String,
+    /// The check.
+    pub check: CheckId,
+    /// The quantity, as in `the mean`.
+    pub what: String,
     /// ln E.
     pub ln_e: f64,
 }
@@ -213,8 +216,8 @@ impl Entry {
         let checks = row.own_findings().filter(|found| !found.expects_bias);
         let checks = checks.filter_map(|found| {
             let ln_e = found.gate?.ln_e;
-            let check = format!("{}: {}", found.check, found.what);
-            ln_e.is_finite().then_some(Evidence { check, ln_e })
+            let (check, what) = (found.check, found.what.clone());
+            ln_e.is_finite().then_some(Evidence { check, what, ln_e })
         });
         Self {
             id: ChannelId { experiment: experiment.id.clone(), channel: row.channel.clone() },

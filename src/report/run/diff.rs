@@ -83,12 +83,12 @@ pub fn all(comparison: &Comparison) -> Vec<Difference> {
     all
 }
 
-fn drift(Drift { id, check, ln_e, limit, command }: &Drift) -> Difference {
+fn drift(Drift { id, check, what, ln_e, limit, command }: &Drift) -> Difference {
     let shown = format!("ln E = {} ≥ {}", evidence(*ln_e), short(*limit, 3));
     Difference {
         is_worse: true,
         experiment: id.to_string(),
-        quantity: check.clone(),
+        quantity: format!("{check}: {what}"),
         values: [None, Some((*ln_e, shown))],
         ratio: None,
         interval: None,

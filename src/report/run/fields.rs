@@ -102,7 +102,7 @@ table! {
         "variance_ratio" ["s²/V", "", Places(3)]: "Measured variance over that of theory" = |line| line.variance_ratio();
         "lookups_spread" ["± σ", "", Fixed(4)]: "Standard deviation of the number of lookups in theory"
             = |line| line.experiment.lookups_variance.map(f64::sqrt);
-        "needed" ["needed", "", Enough]: "Number of draws that a pass takes, where the plan has too few" = |line| line.needed_draws;
+        "needed" ["needed", "", Enough]: "Number of draws that a pass takes, where the plan has too few" = |line| line.foreseen.as_ref().and_then(|foreseen| foreseen.needed);
         "best_sampling_marked" ["best σ̂", "1/length", Fixed(4)]: "Best σ̂, marked where its figure of merit is 90 % of a limit"
             = |line| best_sampling(line);
         "best_fom_marked" ["best FoM", "", Fixed(4)]: "Figure of merit at the best σ̂, which is infinite without a variance"

@@ -5,7 +5,7 @@ use super::judgement::{Comparison, Judgement, Refuted, Tile};
 use super::picture::Stack;
 use super::promises::{guarantees, guarantees_against};
 use crate::{Reasons, SIDE_SHARE};
-use gate::deviation::{Deviation, signed_percent};
+use gate::deviation::{Deviation, DrawUnit, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{enough, percent, short};
 
@@ -318,7 +318,7 @@ fn in_channel(judgement: &Judgement, tile: &Tile) -> String {
 fn deviation(judgement: &Judgement, tile: &Tile) -> Deviation {
     let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
         .with_z(tile.z.unwrap_or(f64::NAN));
-    Deviation { unit: "passes", ..told }
+    Deviation { unit: DrawUnit::Passes, ..told }
 }
 
 /// Returns an obvious deviation in words.

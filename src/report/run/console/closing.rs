@@ -87,9 +87,7 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
 
 /// Adds the rows that the planned draws leave inconclusive, case by case, with the command that decides them.
 fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
-    let rows = |case: &CaseRecord, verdict| {
-        case.rows().filter(|row| row.foreseen == Some(verdict)).count()
-    };
+    let rows = |case: &CaseRecord, verdict| case.rows().filter(|row| row.foresees(verdict)).count();
     let open = cases.iter().filter(|case| rows(case, Verdict::Inconclusive) > 0);
     for case in open {
         let word = Verdict::Inconclusive.word();

@@ -135,18 +135,14 @@ pub fn is_skipped(row: &Row, view: View) -> bool {
     view == View::Plan
         && row.verdict.is_none()
         && row.experiment.draws.is_none()
-        && !row.reason.is_empty()
+        && !row.reason().is_empty()
 }
 
 /// Returns the word for the result of a row.
 pub fn status(row: &Row, view: View) -> Field {
-    let status_of = |verdict: Option<Verdict>| {
-        let paint = verdict.map_or(Paint::Plain, paint);
-        Field { text: verdict.map_or("", Verdict::word).to_owned(), paint }
-    };
-    match row.verdict {
-        Some(_) => status_of(row.verdict),
-        None if row.foreseen.is_some() => status_of(row.foreseen),
+    let foreseen = || row.foreseen.as_ref().map(|foreseen| foreseen.verdict);
+    match row.verdict.or_else(foreseen) {
+        Some(verdict) => Field { text: verdict.word().to_owned(), paint: paint(verdict) },
         None if is_skipped(row, view) => Field { text: "skipped".to_owned(), paint: Paint::Dim },
         None => Field::plain(String::new()),
     }
