@@ -1,6 +1,6 @@
 //! Results of an experiment: its identity, its channels, and the findings of the checks.
 
-use estimators::Refusal;
+use estimators::{Knowledge, Refusal};
 use gate::CheckId;
 use gate::session::Reason;
 use numeric::Grade;
@@ -21,8 +21,8 @@ pub struct ExperimentRecord {
     pub name: String,
     /// The number of the estimator in the case's list, from 0.
     pub listed: usize,
-    /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
-    pub needs: String,
+    /// Knowledge of the medium that σ̂, control and estimator need beside lookups.
+    pub needs: Vec<Knowledge>,
     /// Reason why it is not drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refusal: Option<Refusal>,
@@ -304,11 +304,6 @@ impl ChannelRecord {
     /// Returns the figure of merit at the best σ̂; `None` if it is infinite.
     pub fn best_fom(&self) -> Option<f64> {
         self.best.as_ref().and_then(|best| best.fom)
-    }
-
-    /// Returns the kind of the best σ̂; empty if it was not searched.
-    pub fn best_kind(&self) -> &str {
-        self.best.as_ref().map_or("", |best| &best.kind)
     }
 
     /// Returns the limit of the figure of merit, if it rises with σ̂ to one.

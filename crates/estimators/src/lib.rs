@@ -44,7 +44,7 @@ pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::{Fields, Setup};
 
 pub use crate::draw::{Draw, DrawBuffer, Request};
-pub use traits::{Inputs, Traits};
+pub use traits::{Inputs, Knowledge, Traits};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
 

@@ -114,12 +114,11 @@ impl Baseline {
     /// Takes the results of a run for storing; `cases` are those of its plan.
     pub fn of(record: &Record, cases: &[Case], executable: &str) -> Self {
         let results = &record.results;
-        let digest = |name: &str| cases.iter().find(|case| case.name == name).map(|c| c.digest);
         let mut entries = Vec::new();
         for case in &results.cases {
-            let digest = format!("{:016x}", digest(&case.name).unwrap_or(0));
+            let own = cases.iter().find(|own| own.name == case.name);
             let drawn = case.rows().filter(|row| row.experiment.drawn.is_some());
-            entries.extend(drawn.map(|row| Entry::of(&row, results.seed, &digest)));
+            entries.extend(drawn.map(|row| Entry::of(&row, results.seed, own)));
         }
         Self {
             schema: SCHEMA,
@@ -207,8 +206,9 @@ impl Entry {
             && self.mean.is_none_or(f64::is_finite)
     }
 
-    fn of(row: &Row, seed: u64, digest: &str) -> Self {
+    fn of(row: &Row, seed: u64, case: Option<&Case>) -> Self {
         let (experiment, is_first) = (row.experiment, row.is_first());
+        let learns = |case: &Case| case.scenario.learns(experiment.listed);
         let draws = experiment.draws.unwrap_or(0);
         // A predicted number of lookups without spread has deviation 0.
         let spread =
@@ -221,9 +221,9 @@ impl Entry {
         });
         Self {
             id: ChannelId { experiment: experiment.id.clone(), channel: row.channel.clone() },
-            case: digest.to_owned(),
+            case: format!("{:016x}", case.map_or(0, |case| case.digest)),
             seed,
-            learns: experiment.id.sampling.kind.contains("pilot"),
+            learns: experiment.id.sampling.constant.is_none() && case.is_some_and(learns),
             draws,
             mean: row.mean,
             variance: row.variance,

@@ -1,5 +1,6 @@
 //! Failures of a run, finding by finding, in words that the console and the reports share.
 
+use crate::case::sweep::SweptQuantity;
 use crate::record::{Finding, Record, Row, Verdict};
 use crate::report::fields::{Shown, Table, shown};
 use crate::report::lists::joined;
@@ -150,8 +151,8 @@ pub fn pattern(row: &Row) -> Pattern {
 
 /// Returns the end of a sweep of σ̂ if an estimator fails at that end only, else [`Place::Anywhere`].
 fn place(row: &Row) -> Place {
-    let is_of_sampling = |what: &str| ["sampling", "sampling-scale"].contains(&what);
-    if !row.case.sweep.as_ref().is_some_and(|sweep| is_of_sampling(&sweep.what)) {
+    let swept = row.case.sweep.as_ref().map(|sweep| sweep.what);
+    if !matches!(swept, Some(SweptQuantity::Sampling | SweptQuantity::SamplingScale)) {
         return Place::Anywhere;
     }
     let is_same = |other: &Row| {

@@ -8,6 +8,7 @@ pub mod minimum;
 pub mod none;
 
 use super::{Refusal, Site, recipes};
+use crate::Knowledge;
 use media::Control;
 
 /// A recipe for a control: it makes σ_c for a medium.
@@ -34,7 +35,7 @@ pub trait Recipe: Send + Sync {
     }
 
     /// Knowledge of the medium that the control needs beside lookups, as in `τ`; `None` for none.
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         None
     }
 

@@ -8,6 +8,7 @@ pub mod pilot;
 pub mod spectral;
 
 use super::{Refusal, Site, recipes};
+use crate::Knowledge;
 use media::{Control, Majorants, Piecewise, Volume};
 
 /// A recipe for a sampling extinction: it makes σ̂ for a medium and a control.
@@ -52,7 +53,7 @@ pub trait Recipe: Send + Sync {
     }
 
     /// Knowledge of the medium that σ̂ needs beside lookups, as in `max |σ_t − σ_c|`; `None` for none.
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         None
     }
 
