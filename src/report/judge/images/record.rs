@@ -77,7 +77,7 @@ table! {
         "estimate.first_channel": "Its channel" = |of| of.estimate.and_then(|found| Some(found.first?[2]));
         "truth_passes": "Number of passes that the truth is the mean of; null for an exact truth" = |of| of.truth_passes;
         "comparison.passes": "Number of passes of the reference" = |of| comparison(of, |found| found.passes);
-        "comparison.method": "Test of equal distributions: permutation, signs or none" = |of| comparison(of, |found| found.method);
+        "comparison.method": "Test of equal distributions: permutation, signs or none" = |of| comparison(of, |found| found.method.word());
         "comparison.permutations": "Number of random permutations" = |of| comparison(of, |found| found.permutations);
         "comparison.p": "Smallest p-value of all tiles and the whole together, for equal distributions" = |of| comparison(of, |found| found.p);
         "comparison.is_same_distribution": "Whether equal distributions are claimed" = |of| comparison(of, |found| found.is_same_distribution);
