@@ -20,6 +20,7 @@ use crate::case::sweep::Variation;
 use crate::case::{Case, Spec};
 use crate::json;
 use estimators::{DrawBuffer, Experiment};
+use media::catalogue::{Entry, Value};
 use media::files;
 use numeric::pack;
 use numeric::rng::{Streams, name_hash};
@@ -165,14 +166,13 @@ impl Prices {
 
 /// Returns the file of a medium on this machine.
 fn file(folder: &Path, spec: &Spec) -> PathBuf {
-    let medium = spec.with_problem(|settings| {
-        settings
-            .retain(|entry| matches!(&*entry.key, "medium" | "volume" | "span" | "ray" | "rays"));
-    });
+    let (problem, settings) = spec.problem().unwrap_or(("", &[]));
+    let is_of_medium =
+        |entry: &&Entry| matches!(&*entry.key, "medium" | "volume" | "span" | "ray" | "rays");
+    let medium = Value::Table(settings.iter().filter(is_of_medium).cloned().collect());
     let text = toml::to_string(&medium).unwrap_or_default();
-    let text = text.lines().filter(|line| !line.starts_with("title")).collect::<String>();
     let level = pack::word(Level::new());
-    let name = format!("{}|{level}|{text}", env!("CARGO_PKG_VERSION"));
+    let name = format!("{}|{level}|{problem}|{text}", env!("CARGO_PKG_VERSION"));
     folder.join(format!("{:016x}.json", name_hash(&name)))
 }
 

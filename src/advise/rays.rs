@@ -2,10 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::candidates;
 use crate::case::{Case, CaseError, Spec};
 use crate::render::view::{Camera, furthest};
-use media::catalogue::{Domain, Node, Settings, Value};
+use media::catalogue::{Domain, Entry, Node, Settings, Value};
 use media::{Body, Volume};
 use numeric::geometry::{Aabb, Point, Ray};
 use numeric::rng::{Address, Stream, name_hash};
@@ -34,8 +33,10 @@ pub fn read(spec: &Spec, count: Option<u64>, seed: u64) -> Result<(Case, Vec<Bod
         settings.retain(|entry| entry.key != "rays");
         if !settings.iter().any(|entry| entry.key == "ray" || entry.key == "span") {
             // It stands for the others until these are known.
-            let any = "ray = { origin = [0, 0, 0], direction = [1, 1, 1], length = 1 }";
-            settings.extend(candidates::parsed(spec, any));
+            let vector = |key: &str, of: f64| Entry::new(key, Value::numbers([of; 3]));
+            let length = Entry::new("length", Value::Number(1.0));
+            let any = vec![vector("origin", 0.0), vector("direction", 1.0), length];
+            settings.push(Entry::new("ray", Value::Table(any)));
         }
     });
     let case = Case::of(&base)?;

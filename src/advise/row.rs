@@ -5,6 +5,7 @@ use super::costs::{Prices, Wanted};
 use super::score::Score;
 use super::study::{Best, Study};
 use crate::case::sweep::{SweptQuantity, Variation};
+use estimators::Knowledge;
 use numeric::digits::number;
 use theory::prediction::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
 
@@ -103,17 +104,20 @@ impl Row {
         let below = setting.zip(least).filter(|&(_, least)| least > 0.0);
         let below = below.map(|((what, _), least)| (candidate, Some((what, BELOW * least))));
         let bound = below.and_then(|below| study.violated(below, 0..study.cases.len()));
+        let known = at.needs(candidate);
         let own = match () {
             () if listed.is_profile => "|σ_t − σ_c| along the ray".to_owned(),
             () if study.learns(candidate) => "pilot rays".to_owned(),
-            () => at.needs(candidate),
+            () => Knowledge::list(&known),
         };
+        let is_learned = study.learns(candidate);
+        let has_the_answer = known.iter().any(|one| one.has_the_answer());
         let group = match () {
-            () if listed.is_profile || own.contains('τ') => Group::Informed,
+            () if listed.is_profile || has_the_answer && !is_learned => Group::Informed,
             () if score.is_bound => Group::Bounded,
             () => Group::Ranked,
         };
-        let needs = [Some(&*own).filter(|own| !own.is_empty()), bound];
+        let needs = [Some(&*own).filter(|own| !own.is_empty()), bound.as_deref()];
         let of = |what| setting.filter(|setting| setting.0 == what).map(|setting| setting.1);
         let constant = of(SweptQuantity::Sampling);
         let factor = of(SweptQuantity::SamplingScale).filter(|&factor| factor != 1.0);

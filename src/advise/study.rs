@@ -1,5 +1,6 @@
 //! V·cost of the candidates over the rays of a medium, by exact theory, and the best setting of each family.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -192,7 +193,7 @@ impl<'a> Study<'a> {
         &self,
         setting: Setting,
         rays: impl IntoIterator<Item = usize>,
-    ) -> Option<&'static str> {
+    ) -> Option<Cow<'static, str>> {
         // A prediction is faster than a preparation with its reason.
         let mut refused = rays.into_iter().filter(|&ray| self.predict(setting, (ray, 1)).is_none());
         refused.find_map(|ray| match self.refusal(setting, ray)? {

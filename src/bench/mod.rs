@@ -101,7 +101,7 @@ fn case_of(measured: &[Measured]) -> BenchCase {
         problem: case.problem.clone(),
         medium: case.scenario.medium().to_owned(),
         digest: format!("{:016x}", case.digest),
-        swept: case.sweep.as_ref().map(|axis| axis.what.key().to_owned()),
+        swept: case.sweep.as_ref().map(|axis| axis.what),
         rows,
     }
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::clock::Clock;
 use super::stored::Comparison;
 use crate::case::id::ExperimentId;
+use crate::case::sweep::SweptQuantity;
 use crate::record::Digits;
 
 /// A finished bench.
@@ -58,7 +59,7 @@ pub struct BenchCase {
     /// A hash of the case's text.
     pub digest: String,
     /// Swept quantity, if there is one.
-    pub swept: Option<String>,
+    pub swept: Option<SweptQuantity>,
     /// One row per experiment and channel; the rows of one experiment follow each other.
     pub rows: Vec<BenchRow>,
 }

@@ -7,6 +7,7 @@ use super::clock::Lap;
 use super::curve::{ChannelSample, Sample};
 use super::record::{BenchRow, CurvePoint, ERRORS, Spread, Times, efficiency, time_to};
 use crate::plan::Planned;
+use estimators::Knowledge;
 use theory::Channel;
 use theory::prediction::CERTAIN;
 
@@ -21,7 +22,7 @@ fn spread(laps: &[Lap], figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
 }
 
 fn named(planned: &Planned) -> BenchRow {
-    let (id, needs) = (planned.id.clone(), planned.needs.clone());
+    let (id, needs) = (planned.id.clone(), Knowledge::list(&planned.needs));
     BenchRow { id, listed: planned.estimator, needs, ..BenchRow::default() }
 }
 

@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::path::Path;
 
+use estimators::FormCatalogue;
 use media::catalogue::{Entry, Settings};
 use theory::problems::ProblemOption;
 use theory::problems::options::{chosen, listed};
@@ -12,10 +13,9 @@ use theory::problems::options::{chosen, listed};
 /// case's form.
 pub fn explain_estimator(problem: &str, own: &[ProblemOption], name: &str) -> Option<[String; 2]> {
     let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
-    let has_name =
-        |form: &estimators::FormCatalogue| form.pages.iter().any(|page| page.name() == name);
+    let has_name = |form: &FormCatalogue| form.pages.iter().any(|page| page.name() == name);
     let forms: Vec<_> = forms.filter(has_name).collect();
-    let cure = |form: &estimators::FormCatalogue| {
+    let cure = |form: &FormCatalogue| {
         let without = |from: &[ProblemOption], others: &[ProblemOption]| -> Vec<ProblemOption> {
             from.iter().filter(|option| !others.contains(option)).copied().collect()
         };
@@ -45,15 +45,14 @@ fn needed(options: &[ProblemOption]) -> String {
     }
 }
 
-/// Returns the name of the form that a problem's settings ask for, as in `rod with light`; `None` where no form has all
-/// options.
-pub fn title(problem: &str, settings: &[Entry]) -> Option<String> {
+/// Returns the form that a problem's settings ask for; `None` where no form has all options.
+pub fn chosen_form(problem: &str, settings: &[Entry]) -> Option<FormCatalogue> {
     let faults = RefCell::default();
     let settings = Settings::new(settings, Path::new(""), &faults);
     let forms = estimators::catalogues().into_iter().filter(|form| form.problem == problem);
     let mut forms: Vec<_> = forms.collect();
     let options: Vec<_> = forms.iter().map(|form| form.options).collect();
-    Some(forms.swap_remove(chosen(&options, &settings)?).title)
+    Some(forms.swap_remove(chosen(&options, &settings)?))
 }
 
 #[cfg(test)]

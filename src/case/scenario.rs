@@ -12,7 +12,7 @@ use crate::case::sweep::{SweptQuantity, Variation};
 use estimators::recipes::{controls, sampling};
 use estimators::setup::Parts;
 use estimators::trial::Joined;
-use estimators::{RayView, Refusal, Site};
+use estimators::{Knowledge, RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise, Volume, misses};
@@ -319,8 +319,8 @@ impl<'a> ScenarioAtPoint<'a> {
         self.scenario().estimators.list[estimator].alias().filter(|_| is_plain)
     }
 
-    /// Returns the knowledge of the medium that an experiment needs beside lookups, as in `τ, max |σ_t − σ_c|`.
-    pub fn needs(&self, estimator: usize) -> String {
+    /// Returns the knowledge of the medium that an experiment needs beside lookups.
+    pub fn needs(&self, estimator: usize) -> Vec<Knowledge> {
         let (scenario, variation) = (self.scenario(), self.variation());
         let parsed = &scenario.estimators.list[estimator];
         let control = scenario.with_control(estimator, variation, |recipe| recipe.needs());
@@ -329,9 +329,9 @@ impl<'a> ScenarioAtPoint<'a> {
         let recipe = scenario.estimators.sampling_of(parsed);
         let recipe = recipe
             .filter(|_| !(is_swept && scenario.depends_on(estimator, SweptQuantity::Sampling)));
-        let own = parsed.traits.needs.filter(|own| control != Some(own));
+        let own = parsed.traits.needs.filter(|own| control != Some(*own));
         let needs = [own, control, recipe.and_then(sampling::Recipe::needs)];
-        needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
+        needs.into_iter().flatten().collect()
     }
 
     /// Returns the parts of an experiment, with σ̂ = `what_if` if that is given, and the number of lookups that made them.

@@ -133,12 +133,8 @@ impl Spec {
         if !self.faults.is_empty() {
             return Err(self.source.faulty(self.faults.clone()));
         }
-        let node = |value| Node { value, span: 0..0 };
-        let entry =
-            |key: &str, value| Entry { key: key.to_owned(), key_span: 0..0, node: node(value) };
-        let values = values.iter().map(|&value| node(Value::Number(value))).collect();
-        let values = Value::Table(vec![entry("values", Value::Array(values))]);
-        let sweep = entry("sweep", Value::Table(vec![entry(what, values)]));
+        let values = Value::keyed("values", Value::numbers(values.iter().copied()));
+        let sweep = Entry::new("sweep", Value::keyed(what, values));
         let changed = self.with_problem(|settings| {
             settings.retain(|entry| entry.key != "sweep");
             settings.push(sweep);

@@ -1,7 +1,7 @@
 //! Cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each; and
 //! examples for the pages of the catalogue, which are built-in cases reduced to the settings that a page needs.
 
-use crate::case::forms::title;
+use crate::case::forms::chosen_form;
 use crate::case::spec::{BuiltIn, Source, Spec, entry};
 use media::catalogue::{Entry, Node, Value, own_pages};
 
@@ -146,7 +146,7 @@ impl Target<'_> {
     fn candidates(&self, source: &Source) -> Vec<(usize, String)> {
         let Ok(spec) = Spec::parse(source, &own_pages::NONE) else { return Vec::new() };
         let Some((problem, body)) = spec.problem() else { return Vec::new() };
-        let title = title(problem, body).unwrap_or_default();
+        let title = chosen_form(problem, body).map_or(String::new(), |form| form.title);
         let root = spec.entries();
         let Some(list) = entry(body, "estimators") else { return Vec::new() };
         let Value::Array(items) = &list.node.value else { return Vec::new() };

@@ -62,7 +62,8 @@ pub fn read(
         reader.sphere(body, sphere)
     } else {
         let settings = case.spec.problem().map_or(&[][..], |(_, settings)| settings);
-        let asked = forms::title(&case.problem, settings).unwrap_or_default();
+        let asked =
+            forms::chosen_form(&case.problem, settings).map_or(String::new(), |form| form.title);
         Err((
             format!("renderers do not answer what `{asked}` asks"),
             "take a case of transmittance, furnace, slab or single-scattering (of one channel or several), or ball",

@@ -2,8 +2,10 @@
 //!
 //! 4/5 of α go to the gate, by e-Bonferroni, 1/5 to the p-values, by Holm.
 
+use serde::{Deserialize, Serialize};
+
 use crate::plan::Planned;
-use gate::session::{self, SIDE_SHARE, main_share};
+use gate::session::{self, Reason, SIDE_SHARE, main_share};
 use gate::stats::normal;
 use gate::stats::verdict::Verdict;
 
@@ -52,49 +54,37 @@ impl Levels {
     }
 }
 
-/// Best verdict that the planned draws allow, and the number of draws that allows a better one.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// Best verdict of a plan that has too few draws for a pass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Foreseen {
-    /// `inconclusive` or `underpowered`; `None` if the planned draws suffice for a pass.
-    pub verdict: Option<Verdict>,
+    /// `inconclusive` or `underpowered`.
+    pub verdict: Verdict,
     /// Number of draws that the checks of that verdict need; `None` if no number of draws is enough.
     pub needed: Option<f64>,
-    /// Reason, with the numbers of draws; empty without a verdict.
-    pub reason: String,
+    /// Reasons of the checks that cannot pass, those of that verdict first.
+    pub reasons: Vec<Reason>,
 }
 
 impl Foreseen {
-    /// Returns the best verdict on one channel of an experiment.
-    pub fn of(planned: &Planned, channel: usize) -> Self {
+    /// Returns the best verdict on one channel of an experiment; `None` if the planned draws suffice for a pass.
+    pub fn of(planned: &Planned, channel: usize) -> Option<Self> {
         let about = planned.questions.iter().filter(|q| q.channel.is_none_or(|one| one == channel));
         // A bias that must be shown needs no pass.
         let promised = about.filter(|q| !q.expects_bias || q.answer.scalar().is_none());
-        let weak: Vec<(Verdict, f64, String)> = promised
+        let weak: Vec<(Verdict, f64, Reason)> = promised
             .filter_map(|question| {
                 let (reason, needed) = question.answer.too_weak(&question.what)?;
-                Some((question.too_weak, needed, reason.to_string()))
+                Some((question.too_weak, needed, reason))
             })
             .collect();
         if weak.is_empty() {
-            return Self::default();
+            return None;
         }
         let verdict = Verdict::worst(weak.iter().map(|one| one.0));
-        // Checks of the verdict come first.
         let (own, others): (Vec<_>, Vec<_>) = weak.into_iter().partition(|one| one.0 == verdict);
         let needed = own.iter().map(|one| one.1).fold(0.0, f64::max);
-        let reasons = own.iter().chain(&others).map(|one| one.2.as_str());
-        let (verdict, needed) = (Some(verdict), Some(needed).filter(|needed| needed.is_finite()));
-        Self { verdict, needed, reason: joined(reasons) }
+        let needed = Some(needed).filter(|needed| needed.is_finite());
+        let reasons = own.into_iter().chain(others).map(|one| one.2).collect();
+        Some(Self { verdict, needed, reasons })
     }
-}
-
-/// Joins different reasons to one text; empty ones are left out.
-pub fn joined<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
-    let mut different: Vec<&str> = Vec::new();
-    for reason in reasons {
-        if !reason.is_empty() && !different.contains(&reason) {
-            different.push(reason);
-        }
-    }
-    different.join("; ")
 }

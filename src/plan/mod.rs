@@ -24,7 +24,7 @@ use ::gate::stats::gate;
 use ::gate::stats::verdict::{BLOCK, Verdict};
 use checks::check::Share;
 use checks::{self, Pilot, Question, Scalar, Subject};
-use estimators::{DrawBuffer, Refusal};
+use estimators::{DrawBuffer, Knowledge, Refusal};
 use numeric::pack::WIDTH;
 use numeric::rng::{Address, PILOT, Streams};
 use theory::parallel;
@@ -60,8 +60,8 @@ pub struct Planned {
     pub id: ExperimentId,
     /// Earlier experiment of the case that is the same by definition: both share the same draws.
     pub same_as: Option<ExperimentId>,
-    /// Knowledge of the medium that the experiment needs beside lookups; empty for none.
-    pub needs: String,
+    /// Knowledge of the medium that the experiment needs beside lookups.
+    pub needs: Vec<Knowledge>,
     /// Number of draws that share the setup lookups of a ray.
     pub draws_per_ray: u64,
     /// Address of its random numbers.
@@ -236,7 +236,7 @@ fn plan_experiment(
     let address = case.address(options.seed, estimator, variation);
     let pilots = case.pilots(options.seed, estimator);
     let at = case.at(variation);
-    let needs = at.as_ref().map_or_else(|_| String::new(), |at| at.needs(estimator));
+    let needs = at.as_ref().map_or_else(|_| Vec::new(), |at| at.needs(estimator));
     let outcome = at.and_then(|at| at.prepare(estimator, pilots));
     Planned {
         number: 0,

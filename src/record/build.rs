@@ -1,7 +1,7 @@
 //! Builds the record of a plan, of its predictions, or of its judged draws.
 
 use crate::draw::block::Draws;
-use crate::plan::levels::{Foreseen, joined};
+use crate::plan::levels::Foreseen;
 use crate::plan::{Plan, PlannedCase};
 use crate::record::evaluate::{self, Judged};
 use crate::record::repeat::{command, deciding, deciding_all};
@@ -28,10 +28,8 @@ pub fn planned(plan: &Plan) -> Record {
                 if values.verdict.is_some() {
                     continue;
                 }
-                let foreseen = Foreseen::of(planned, channel);
-                (values.foreseen, values.needed_draws) = (foreseen.verdict, foreseen.needed);
-                values.reason = foreseen.reason;
-                if values.foreseen == Some(Verdict::Inconclusive) {
+                values.foreseen = Foreseen::of(planned, channel);
+                if values.foresees(Verdict::Inconclusive) {
                     values.decide.clone_from(&decide);
                 }
             }
@@ -159,7 +157,7 @@ fn record(plan: &Plan, cases: Vec<CaseRecord>) -> Record {
 
 /// Returns the record of an experiment with its draws and the findings of its checks.
 fn experiment(plan: &Plan, judged: &Judged) -> ExperimentRecord {
-    let (of, findings) = (judged.of, judged.findings());
+    let (of, findings) = (judged.of, judged.findings.clone());
     let (case, planned, drawn) = (of.case, of.planned, &of.drawn);
     let mut record = theory::predicted(case, planned);
     let seconds = planned.outcome.is_ok().then_some(drawn.seconds);
@@ -183,24 +181,16 @@ fn experiment(plan: &Plan, judged: &Judged) -> ExperimentRecord {
         };
     }
     for values in &mut record.channels {
-        let found = record.findings.iter().filter(|finding| finding.is_about(&values.channel));
-        let found: Vec<&Finding> = found.collect();
-        let mean = found.iter().find(|finding| finding.check == CheckId::Mean);
+        let found = || record.findings.iter().filter(|finding| finding.is_about(&values.channel));
+        let mean = found().find(|finding| finding.check == CheckId::Mean);
         values.detectable_bias = mean.and_then(|mean| mean.gate).map(|gate| gate.tolerance);
-        let (verdict, reason) = worst(&found);
-        (values.verdict, values.reason) = (Some(verdict), reason);
+        let verdict = Verdict::worst(found().map(|finding| finding.verdict));
+        values.verdict = Some(verdict);
         if verdict == Verdict::Inconclusive {
             values.decide = deciding(plan, case, planned, &record.findings);
         }
     }
     record
-}
-
-/// Returns the worst verdict, with all of its reasons.
-fn worst(findings: &[&Finding]) -> (Verdict, String) {
-    let verdict = Verdict::worst(findings.iter().map(|finding| finding.verdict));
-    let own = findings.iter().filter(|finding| finding.verdict == verdict);
-    (verdict, joined(own.map(|finding| finding.reason.as_str())))
 }
 
 /// Fills in the numbers that depend on the whole run.

@@ -17,8 +17,8 @@ use ::theory::prediction::search::Kind;
 /// Axis of a sweep and the predicted curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Sweep {
-    /// Key of the swept quantity in case files, as `sampling` or `density`.
-    pub what: String,
+    /// The swept quantity.
+    pub what: SweptQuantity,
     /// The axis title with symbol and unit.
     pub axis: String,
     /// True if the axis is logarithmic.
@@ -56,8 +56,8 @@ pub struct Best {
     pub sampling: f64,
     /// The figure of merit there; `None` where it is infinite.
     pub fom: Option<f64>,
-    /// Kind of this σ̂, in the words of a row's `best_kind`.
-    pub kind: String,
+    /// Kind of this σ̂.
+    pub kind: Kind,
     /// Limit of the figure of merit, if it rises with σ̂ to one.
     pub limit: Option<f64>,
 }
@@ -65,7 +65,7 @@ pub struct Best {
 impl Best {
     /// Returns whether the figure of merit is largest there.
     pub fn is_optimum(&self) -> bool {
-        self.kind == Kind::Optimum.words()
+        self.kind == Kind::Optimum
     }
 }
 
@@ -169,7 +169,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
 /// Returns the sweep of a case, without curves.
 pub fn axis(case: &Case) -> Option<Sweep> {
     let axis = case.sweep.as_ref()?;
-    let (what, title) = (axis.what.key().to_owned(), axis.what.axis().to_owned());
+    let (what, title) = (axis.what, axis.what.axis().to_owned());
     Some(Sweep { what, axis: title, log: axis.log, z_limit: None, curves: Vec::new() })
 }
 
@@ -222,8 +222,7 @@ fn without_points(id: &ExperimentId, listed: usize) -> Curve {
 pub fn named_best(optimum: Optimum) -> Best {
     let Optimum { sampling, figure_of_merit, limit, kind } = optimum;
     let fom = finite(Some(figure_of_merit));
-    let words = if kind == Kind::NearLimit { "90 % of the limit" } else { kind.words() };
-    Best { sampling, fom, kind: words.to_owned(), limit }
+    Best { sampling, fom, kind, limit }
 }
 
 /// Returns the channels with their points; none if the estimator is refused.

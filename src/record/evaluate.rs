@@ -1,4 +1,4 @@
-//! Turns totals into answers, one per question. Their reasons become words in the record alone.
+//! Turns totals into findings, one per question.
 //!
 //! ```text
 //! gate   failed ⇒ fail, passed ⇒ pass, open ⇒ underpowered if that was known, else inconclusive
@@ -23,59 +23,38 @@ use gate::stats::multiplicity;
 use gate::stats::verdict::BLOCK;
 use theory::parallel;
 
-/// Experiment with its draws and the answers of its checks.
+/// Experiment with its draws and the findings of its checks.
 pub struct Judged<'d> {
     /// The experiment with its draws.
     pub of: &'d DrawnExperiment<'d>,
-    /// The answers, in the order of the questions.
-    answers: Vec<Answer>,
-}
-
-/// Answer of a check to a question: a finding, and its reason before it is put into words.
-struct Answer {
-    finding: Finding,
-    reason: Option<Reason>,
+    /// The findings, in the order of the questions.
+    pub findings: Vec<Finding>,
 }
 
 impl Judged<'_> {
-    /// Returns the findings, with their reasons in words.
-    pub fn findings(&self) -> Vec<Finding> {
-        let worded = |Answer { finding, reason }: &Answer| Finding {
-            reason: reason.as_ref().map_or_else(String::new, Reason::to_string),
-            ..finding.clone()
-        };
-        self.answers.iter().map(worded).collect()
-    }
-
     /// Returns the number of means that pass with a variance that is assumed.
     pub fn assumed(&self) -> usize {
-        let is_one = |answer: &&Answer| {
-            answer.is_passing_mean()
-                && !answer.finding.expects_bias
-                && answer.reason == Some(Reason::VarianceAssumed)
+        let is_one = |finding: &&Finding| {
+            is_passing_mean(finding)
+                && !finding.expects_bias
+                && finding.reason == Some(Reason::VarianceAssumed)
         };
-        self.answers.iter().filter(is_one).count()
+        self.findings.iter().filter(is_one).count()
     }
 }
 
-impl Answer {
-    fn is(&self, check: CheckId) -> bool {
-        self.finding.check == check
-    }
-
-    fn is_passing_mean(&self) -> bool {
-        self.is(CheckId::Mean) && self.finding.verdict == Verdict::Pass
-    }
+fn is_passing_mean(finding: &Finding) -> bool {
+    finding.check == CheckId::Mean && finding.verdict == Verdict::Pass
 }
 
 /// Judges the draws of a plan, experiment by experiment.
 pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
     let mut judged =
-        parallel::map(&draws.experiments, |of| Judged { of, answers: answers(plan, of) });
-    let mut all: Vec<&mut Answer> = judged.iter_mut().flat_map(|one| &mut one.answers).collect();
+        parallel::map(&draws.experiments, |of| Judged { of, findings: findings(plan, of) });
+    let mut all: Vec<&mut Finding> = judged.iter_mut().flat_map(|one| &mut one.findings).collect();
     judge_distributions(plan, &mut all);
     for one in &mut judged {
-        explain_blocks(&mut one.answers);
+        explain_blocks(&mut one.findings);
     }
     judged
 }
@@ -93,35 +72,35 @@ fn blank(check: CheckId, what: &str, channel: String) -> Finding {
         path: Vec::new(),
         block: None,
         verdict: Verdict::Inconclusive,
-        reason: String::new(),
+        reason: None,
     }
 }
 
-/// Returns the answers about an experiment; p-values of distributions are still to be judged together.
-fn answers(plan: &Plan, of: &DrawnExperiment) -> Vec<Answer> {
+/// Returns the findings about an experiment; p-values of distributions are still to be judged together.
+fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
     let DrawnExperiment { planned, drawn, .. } = of;
     if drawn.draws == 0 {
-        let finding = blank(CheckId::Mean, "the mean", String::new());
-        return vec![Answer { finding, reason: Some(Reason::NothingDrawn) }];
+        let blank = blank(CheckId::Mean, "the mean", String::new());
+        return vec![Finding { reason: Some(Reason::NothingDrawn), ..blank }];
     }
     let Ok(ready) = &planned.outcome else { return Vec::new() };
     let both = planned.questions.iter().zip(&drawn.totals);
-    let found = both.map(|(question, total)| answer(plan, of, ready, question, total));
-    let mut answers: Vec<Answer> = found.collect();
-    qualify_means(planned, &mut answers);
+    let found = both.map(|(question, total)| finding(plan, of, ready, question, total));
+    let mut findings: Vec<Finding> = found.collect();
+    qualify_means(planned, &mut findings);
     if planned.expect_biased {
-        show_anywhere(&mut answers);
+        show_anywhere(&mut findings);
     }
-    answers
+    findings
 }
 
-fn answer(
+fn finding(
     plan: &Plan,
     of: &DrawnExperiment,
     ready: &Ready,
     question: &Question,
     total: &Total,
-) -> Answer {
+) -> Finding {
     let DrawnExperiment { planned, drawn, .. } = of;
     let channel = question.channel.map(|index| &ready.prediction.channels[index]);
     let levels = plan.levels.of(question.expects_bias);
@@ -150,48 +129,48 @@ fn answer(
         },
     );
     let channel = channel.map_or(String::new(), |channel| channel.name.clone());
-    let finding = Finding {
+    Finding {
         expects_bias: question.expects_bias,
         p: found.p,
         gate: found.gate,
         path: thinned(&found.path),
         block: found.block,
         verdict: found.verdict,
+        reason: found.reason,
         ..blank(question.check, &question.what, channel)
-    };
-    Answer { finding, reason: found.reason }
+    }
 }
 
 /// Judges the p-values of a run together.
-fn judge_distributions(plan: &Plan, answers: &mut [&mut Answer]) {
-    let p: Vec<Option<f64>> = answers.iter().map(|answer| answer.finding.p).collect();
+fn judge_distributions(plan: &Plan, findings: &mut [&mut Finding]) {
+    let p: Vec<Option<f64>> = findings.iter().map(|finding| finding.p).collect();
     let rejected =
         multiplicity::holm(&p, plan.levels.distributions, plan.levels.distribution_alpha);
-    for ((answer, p), rejected) in answers.iter_mut().zip(p).zip(rejected) {
+    for ((finding, p), rejected) in findings.iter_mut().zip(p).zip(rejected) {
         // A p-value of NaN comes from draws that are not finite.
         if let Some(p) = p.filter(|p| rejected || p.is_nan()) {
-            answer.finding.verdict = Verdict::Fail;
-            let (what, p) = (answer.finding.what.clone().into(), format!("{p:.1e}"));
-            answer.reason = Some(Reason::Differs { what, p, details: String::new() });
+            finding.verdict = Verdict::Fail;
+            let (what, p) = (finding.what.clone().into(), format!("{p:.1e}"));
+            finding.reason = Some(Reason::Differs { what, p, details: String::new() });
         }
     }
 }
 
 /// Combines the verdict on each mean with that on the variance of its channel, see [`session::beside_variance`]. The
 /// variance of pilot draws cannot be tested.
-fn qualify_means(planned: &Planned, answers: &mut [Answer]) {
+fn qualify_means(planned: &Planned, findings: &mut [Finding]) {
     let open =
-        |answer: &&Answer| answer.is(CheckId::Variance) && answer.finding.verdict != Verdict::Pass;
-    let variances = answers
+        |finding: &&Finding| finding.check == CheckId::Variance && finding.verdict != Verdict::Pass;
+    let variances = findings
         .iter()
         .filter(open)
-        .map(|Answer { finding, .. }| (finding.channel.clone(), (finding.verdict, finding.gate)));
+        .map(|finding| (finding.channel.clone(), (finding.verdict, finding.gate)));
     let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
     let pilots = channels.iter().filter(|channel| channel.pilot_variance_allowed);
     let pilots = pilots.map(|channel| (channel.name.clone(), (Verdict::Underpowered, None)));
     let variances: Vec<_> = variances.chain(pilots).collect();
-    let is_mean = |answer: &&mut Answer| answer.is(CheckId::Mean) && !answer.finding.expects_bias;
-    for Answer { finding: mean, reason } in answers.iter_mut().filter(is_mean) {
+    let is_mean = |finding: &&mut Finding| finding.check == CheckId::Mean && !finding.expects_bias;
+    for mean in findings.iter_mut().filter(is_mean) {
         let variance = variances.iter().find(|(channel, _)| *channel == mean.channel);
         let is_off =
             |variance: &_| mean.gate.is_none_or(|mean| session::is_off_by_itself(&mean, variance));
@@ -199,41 +178,40 @@ fn qualify_means(planned: &Planned, answers: &mut [Answer]) {
             session::beside_variance("the mean", mean.verdict, variance, is_off)
         });
         if let Some((verdict, why)) = verdict {
-            (mean.verdict, *reason) = (verdict, Some(why));
+            (mean.verdict, mean.reason) = (verdict, Some(why));
         }
     }
 }
 
 /// Adds the cause to blocks and streams that differ from theory if the mean or the variance fails: the difference is
 /// then no evidence of a dependence.
-fn explain_blocks(answers: &mut [Answer]) {
+fn explain_blocks(findings: &mut [Finding]) {
     let fails = |check: CheckId| {
-        answers.iter().any(|answer| answer.is(check) && answer.finding.verdict == Verdict::Fail)
+        findings.iter().any(|finding| finding.check == check && finding.verdict == Verdict::Fail)
     };
     let from = match [fails(CheckId::Mean), fails(CheckId::Variance)] {
         [true, _] => "the mean",
         [_, true] => "the variance",
         _ => return,
     };
-    let is_of_blocks = |answer: &&mut Answer| {
-        let is_either = answer.is(CheckId::Dispersion) || answer.is(CheckId::Streams);
-        is_either && answer.finding.verdict == Verdict::Fail
+    let is_of_blocks = |finding: &&mut Finding| {
+        matches!(finding.check, CheckId::Dispersion | CheckId::Streams)
+            && finding.verdict == Verdict::Fail
     };
-    for answer in answers.iter_mut().filter(is_of_blocks) {
-        let of = answer.reason.take().map(Box::new);
-        answer.reason = of.map(|of| Reason::Follows { of, from: from.into() });
+    for finding in findings.iter_mut().filter(is_of_blocks) {
+        let of = finding.reason.take().map(Box::new);
+        finding.reason = of.map(|of| Reason::Follows { of, from: from.into() });
     }
 }
 
 /// Counts a declared bias as shown if one point of a curve shows it.
-fn show_anywhere(answers: &mut [Answer]) {
-    if !answers.iter().any(Answer::is_passing_mean) {
+fn show_anywhere(findings: &mut [Finding]) {
+    if !findings.iter().any(is_passing_mean) {
         return;
     }
-    for answer in answers.iter_mut().filter(|answer| answer.is(CheckId::Mean)) {
-        if answer.finding.verdict != Verdict::Pass {
-            answer.finding.verdict = Verdict::Pass;
-            answer.reason = Some(Reason::BiasedElsewhere);
+    for mean in findings.iter_mut().filter(|finding| finding.check == CheckId::Mean) {
+        if mean.verdict != Verdict::Pass {
+            (mean.verdict, mean.reason) = (Verdict::Pass, Some(Reason::BiasedElsewhere));
         }
     }
 }

@@ -1,10 +1,13 @@
 //! Results of an experiment: its identity, its channels, and the findings of the checks.
 
+use estimators::{Knowledge, Refusal};
 use gate::CheckId;
+use gate::session::Reason;
 use numeric::Grade;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::ExperimentId;
+use crate::plan::levels::Foreseen;
 use crate::record::{Best, Course, GateFinding, Verdict};
 
 /// Results of one experiment: one estimator at one point of the sweep.
@@ -18,8 +21,11 @@ pub struct ExperimentRecord {
     pub name: String,
     /// The number of the estimator in the case's list, from 0.
     pub listed: usize,
-    /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
-    pub needs: String,
+    /// Knowledge of the medium that σ̂, control and estimator need beside lookups.
+    pub needs: Vec<Knowledge>,
+    /// Reason why it is not drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refusal: Option<Refusal>,
     /// Earlier experiment of the case that is the same by definition: both share their draws.
     pub same_as: Option<ExperimentId>,
     /// Share of the ray's support, or in space of the box around the volume, that is skipped as empty: σ̂ is 0 there.
@@ -139,18 +145,13 @@ pub struct ChannelRecord {
     pub best: Option<Best>,
     /// `pass`, `fail`, `inconclusive`, `underpowered` or `refused`; `None` if nothing was drawn.
     pub verdict: Option<Verdict>,
-    /// Reason of the verdict; empty for a plain pass.
-    pub reason: String,
     /// Command that decides an inconclusive channel; in a plan, one that decides all of the case that it leaves
     /// inconclusive. Empty if no number of draws does, and for all other channels.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub decide: String,
-    /// `inconclusive` or `underpowered` if a plan has too few draws for a pass; `None` in a run.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub foreseen: Option<Verdict>,
-    /// Number of draws that such a channel of a plan needs; `None` if no number of draws is enough.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub needed_draws: Option<f64>,
+    /// Best verdict of a plan that has too few draws for a pass; `None` in a run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub foreseen: Option<Foreseen>,
     /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4, of product estimators.
     #[serde(with = "gate::extended")]
     pub losses: Option<[f64; 4]>,
@@ -241,8 +242,9 @@ pub struct Finding {
     pub block: Option<u64>,
     /// The verdict of the check.
     pub verdict: Verdict,
-    /// Reason of the verdict, with the numbers.
-    pub reason: String,
+    /// Reason of the verdict; `None` for a plain pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<Reason>,
 }
 
 impl Finding {
@@ -289,6 +291,11 @@ impl ChannelRecord {
         self.fom.map(|fom| -fom.log10())
     }
 
+    /// Returns whether a plan foresees this verdict.
+    pub fn foresees(&self, verdict: Verdict) -> bool {
+        self.foreseen.as_ref().is_some_and(|foreseen| foreseen.verdict == verdict)
+    }
+
     /// Returns the constant σ̂ with the largest predicted figure of merit, 1/length; `None` if it was not searched.
     pub fn best_sampling(&self) -> Option<f64> {
         self.best.as_ref().map(|best| best.sampling)
@@ -297,11 +304,6 @@ impl ChannelRecord {
     /// Returns the figure of merit at the best σ̂; `None` if it is infinite.
     pub fn best_fom(&self) -> Option<f64> {
         self.best.as_ref().and_then(|best| best.fom)
-    }
-
-    /// Returns the kind of the best σ̂; empty if it was not searched.
-    pub fn best_kind(&self) -> &str {
-        self.best.as_ref().map_or("", |best| &best.kind)
     }
 
     /// Returns the limit of the figure of merit, if it rises with σ̂ to one.

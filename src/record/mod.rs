@@ -26,6 +26,7 @@ use std::ops::Deref;
 use serde::{Deserialize, Serialize};
 
 pub use crate::case::Course;
+use crate::case::sweep::SweptQuantity;
 pub use crate::record::curves::{Anatomy, Best, Curve, CurvePoint, MeasuredPoint, Sweep};
 pub use experiment::{ChannelRecord, ExperimentRecord, Finding, Score, Spent};
 pub use gate::stats::verdict::{GateFinding, Verdict};
@@ -197,7 +198,7 @@ impl CaseRecord {
     /// Names the experiments: σ̂ and swept values in the fewest digits that distinguish them, namesakes by number.
     pub fn name_experiments(&mut self) {
         let digits = Digits::of(self);
-        let what = self.sweep.as_ref().map_or("at", |sweep| sweep.what.as_str());
+        let what = self.sweep.as_ref().map(|sweep| sweep.what);
         let mut namesakes: BTreeMap<String, usize> = BTreeMap::new();
         for experiment in &mut self.experiments {
             let id = &experiment.id;
@@ -210,7 +211,9 @@ impl CaseRecord {
             if !id.control.is_empty() {
                 parts.push(format!("control {}", id.control));
             }
-            if let Some(swept) = id.swept_value().filter(|_| what != "sampling") {
+            let is_named = what != Some(SweptQuantity::Sampling);
+            if let Some(swept) = id.swept_value().filter(|_| is_named) {
+                let what = what.map_or("at", SweptQuantity::key);
                 parts.push(format!("{what} {}", digits.text(swept)));
             }
             let name = parts.join(", ");
@@ -284,10 +287,10 @@ impl<'a> Row<'a> {
         format!("{}{comma}{channel}", self.experiment.name)
     }
 
-    /// Returns the reason of the verdict; without one, the notes on the case.
-    pub fn why(&self) -> String {
-        let reason = &self.values.reason;
-        if reason.is_empty() { self.case.notes.join("; ") } else { reason.clone() }
+    /// Returns the findings that gave the row its verdict.
+    pub fn deciding(&self) -> impl Iterator<Item = &'a Finding> + use<'a> {
+        let verdict = self.values.verdict;
+        self.findings().filter(move |finding| Some(finding.verdict) == verdict)
     }
 
     /// Returns the values of a quantity.

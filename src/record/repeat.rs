@@ -78,8 +78,9 @@ pub fn deciding(
 pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
     let ready = case.experiments.iter().filter(|planned| planned.outcome.is_ok());
     let open = ready.filter(|planned| {
-        (0..planned.channels())
-            .any(|channel| Foreseen::of(planned, channel).verdict == Some(Verdict::Inconclusive))
+        (0..planned.channels()).any(|channel| {
+            Foreseen::of(planned, channel).is_some_and(|one| one.verdict == Verdict::Inconclusive)
+        })
     });
     let draws = open.filter_map(|planned| decisive_draws(case, planned, &[]));
     let Some(draws) = draws.reduce(f64::max).filter(|&draws| draws <= MAX_DRAWS) else {
@@ -101,8 +102,8 @@ fn decisive_draws(case: &PlannedCase, planned: &Planned, findings: &[Finding]) -
     let mut draws = planned.draws as f64;
     for channel in 0..planned.channels() {
         let foreseen = Foreseen::of(planned, channel);
-        if foreseen.verdict == Some(Verdict::Inconclusive) {
-            draws = draws.max(foreseen.needed?);
+        if let Some(open) = foreseen.filter(|one| one.verdict == Verdict::Inconclusive) {
+            draws = draws.max(open.needed?);
         }
     }
     // A check that was promised a decision and did not get it has a bias of about half of ε.

@@ -24,10 +24,11 @@ pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
     let ready = match &planned.outcome {
         Ok(ready) => ready,
         Err(refusal) => {
-            let (verdict, reason) = (Some(Verdict::Refused), refusal.to_string());
-            let channels = vec![ChannelRecord { verdict, reason, ..ChannelRecord::default() }];
+            let verdict = Some(Verdict::Refused);
+            let channels = vec![ChannelRecord { verdict, ..ChannelRecord::default() }];
             let courses = courses(case, planned, refusal);
-            return ExperimentRecord { courses, channels, ..blank };
+            let refusal = Some(refusal.clone());
+            return ExperimentRecord { refusal, courses, channels, ..blank };
         }
     };
     let prediction = &ready.prediction;

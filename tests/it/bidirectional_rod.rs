@@ -268,7 +268,7 @@ fn draws_meet_means_variances_covariances_and_lookups() {
         for row in &found {
             let is_sound = !matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None);
             if !is_sound {
-                wrong.push(format!("{} {}: {}", row.experiment.label, row.channel, row.reason));
+                wrong.push(format!("{} {}: {}", row.experiment.label, row.channel, row.reason()));
             }
             let asked = |check: CheckId| row.findings().any(|finding| finding.check == check);
             assert!(
@@ -316,7 +316,7 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
             .filter(|row| matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None));
         none(
             &wrong
-                .map(|row| format!("{} {}: {}", row.experiment.label, row.channel, row.reason))
+                .map(|row| format!("{} {}: {}", row.experiment.label, row.channel, row.reason()))
                 .collect::<Vec<_>>(),
         );
     }
@@ -333,7 +333,7 @@ fn without_shares_the_sum_is_what_it_was() {
     assert_eq!((all.len(), sums.len()), (3, 3));
     for (all, sum) in all.iter().zip(&sums) {
         assert_eq!((all.truth, all.predicted_variance), (sum.truth, sum.predicted_variance));
-        assert!(sum.channel.is_empty() && sum.verdict == Some(Verdict::Pass), "{}", sum.reason);
+        assert!(sum.channel.is_empty() && sum.verdict == Some(Verdict::Pass), "{}", sum.reason());
     }
 }
 
@@ -350,7 +350,7 @@ fn orders_without_light_are_refused() {
         ("reflected", 3, "albedo = 0.5", "forward = 0", 2),
         ("reflected", 3, "albedo = 0.5", "forward = 1", 2),
     ] {
-        let reason = &of(sensor, orders, albedo, forward)[0].reason;
+        let reason = &of(sensor, orders, albedo, forward)[0].reason();
         let words = format!("leave none to r = {dark}");
         assert!(reason.contains(&words), "{sensor}, {albedo}, {forward}: {reason}");
     }

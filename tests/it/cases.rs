@@ -32,9 +32,14 @@ fn refuted(record: &Record, is_wanted: impl Fn(&str) -> bool) -> Vec<String> {
             let drawn = row.mean.is_some_and(f64::is_finite);
             match row.verdict {
                 Some(Verdict::Fail) => {
-                    wrong.push(format!("{}, {}: {}", case.name, row.experiment.label, row.reason));
+                    wrong.push(format!(
+                        "{}, {}: {}",
+                        case.name,
+                        row.experiment.label,
+                        row.reason()
+                    ));
                 }
-                Some(Verdict::Refused) if !row.reason.is_empty() => {}
+                Some(Verdict::Refused) if !row.reason().is_empty() => {}
                 Some(_) if drawn => {}
                 other => wrong.push(format!("{}, {}: {other:?}", case.name, row.experiment.label)),
             }

@@ -122,7 +122,7 @@ fn thick_media_are_drawn_in_units_of_their_own() {
         differences.extend(differs(&format!("V {name}"), found, variance, 1e-12));
         let found = number(row.experiment.predicted_lookups);
         differences.extend(differs(&format!("N {name}"), found, lookups, 1e-12));
-        assert_eq!(verdict(row), Verdict::Pass, "{name}: {}", row.reason);
+        assert_eq!(verdict(row), Verdict::Pass, "{name}: {}", row.reason());
         assert!((number(row.mean) - 1.0).abs() < 0.01, "{name}: {:?}", row.mean);
     }
     none(&differences);
@@ -132,9 +132,9 @@ fn thick_media_are_drawn_in_units_of_their_own() {
         let row = row(&found, name);
         assert_eq!(verdict(row), Verdict::Refused, "{name}");
         assert!(
-            row.reason.contains("τ = 1000") || row.reason.contains("τ ≤ 300"),
+            row.reason().contains("τ = 1000") || row.reason().contains("τ ≤ 300"),
             "{}",
-            row.reason
+            row.reason()
         );
     }
 }

@@ -96,7 +96,7 @@ fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
             Some(Verdict::Pass),
             "{}: {}",
             drawn.experiment.label,
-            drawn.reason
+            drawn.reason()
         );
         near(drawn.truth, known.truth, 1e-12);
         // Null collisions are distinguished from real ones here, so that the maximum has another distribution.
@@ -181,7 +181,13 @@ fn thin_ends_of_steep_atmospheres_have_a_bound() {
         sampling.constant.value = 1.6
         estimators = [{ hero = {} }, { spectral-tracking = {} }]";
     for row in predicted(text) {
-        assert_ne!(row.verdict, Some(Verdict::Refused), "{}: {}", row.experiment.label, row.reason);
+        assert_ne!(
+            row.verdict,
+            Some(Verdict::Refused),
+            "{}: {}",
+            row.experiment.label,
+            row.reason()
+        );
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
+use trueflight::gate::session::Reason;
 use trueflight::record::{CaseRecord, Record};
 use trueflight::report::run::junit::{self, Inconclusive};
 
@@ -139,10 +140,10 @@ fn record() -> Record {
         for (one, seconds) in case.experiments.iter_mut().zip(seconds.clone()) {
             one.label = "ratio <&> \"σ\"".into();
             one.spent.seconds = Some(seconds);
-            one.findings.iter_mut().for_each(|finding| finding.reason = odd.into());
-            for channel in &mut one.channels {
-                (channel.reason, channel.mean) = (odd.into(), Some(f64::NAN));
+            for finding in &mut one.findings {
+                finding.reason = Some(Reason::Dependent(odd.to_owned()));
             }
+            one.channels.iter_mut().for_each(|channel| channel.mean = Some(f64::NAN));
         }
         case.name_experiments();
     }

@@ -122,7 +122,7 @@ fn what_an_own_medium_hides_is_found() {
                 Some(Verdict::Pass),
                 "{name} {}: {}",
                 row.experiment.label,
-                row.reason
+                row.reason()
             );
         }
     }

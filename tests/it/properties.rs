@@ -296,7 +296,7 @@ fn rods_and_slabs_are_predicted_or_refused() {
         let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
         for row in record.results.cases[0].rows().collect::<Vec<_>>() {
             if row.verdict == Some(Verdict::Refused) {
-                check(row.reason.len() > 10, || format!("{}: no reason", row.experiment.label))?;
+                check(row.reason().len() > 10, || format!("{}: no reason", row.experiment.label))?;
                 continue;
             }
             let truth = row.truth.unwrap_or(f64::NAN);

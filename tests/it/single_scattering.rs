@@ -241,6 +241,6 @@ fn lookups_of_tight_ratio_tracking_are_predicted() {
             { source-delta-mis = { camera = \"ratio\", shadow.ratio.sampling = 1.2 } },
         ]";
     for row in rows(text, 200_000) {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason());
     }
 }

@@ -420,7 +420,7 @@ fn thin_slabs_are_answered() {
         ("1e-5", "0.9", "isotropic = {}"),
     ] {
         for row in crate::common::predicted(&constant(depth, albedo, phase)) {
-            let context = format!("τ = {depth}, a = {albedo}, {phase}: {}", row.reason);
+            let context = format!("τ = {depth}, a = {albedo}, {phase}: {}", row.reason());
             let [truth, error] = [row.truth, row.truth_error].map(|x| x.expect(&context));
             assert!(error < 1e-4 * truth, "{context}: {error:e}");
         }
@@ -440,7 +440,7 @@ fn what_adding_and_doubling_does_not_resolve_is_named() {
     ] {
         for row in crate::common::predicted(&constant(depth, albedo, &phase)) {
             for word in words {
-                assert!(row.reason.contains(word), "τ = {depth}, a = {albedo}: {}", row.reason);
+                assert!(row.reason().contains(word), "τ = {depth}, a = {albedo}: {}", row.reason());
             }
         }
     }

@@ -7,7 +7,13 @@ use trueflight::record::{Row, Verdict};
 
 fn no_fail(what: &str, rows: &[Row]) {
     for row in rows {
-        assert_ne!(verdict(row), Verdict::Fail, "{what}, {}: {}", row.experiment.label, row.reason);
+        assert_ne!(
+            verdict(row),
+            Verdict::Fail,
+            "{what}, {}: {}",
+            row.experiment.label,
+            row.reason()
+        );
     }
 }
 

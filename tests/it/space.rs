@@ -214,7 +214,7 @@ fn rays_that_are_not_walked_need_not_be_given() {
         let (whole, part) = (drawn(whole), drawn(part));
         assert!(!whole.is_empty() && whole.len() == part.len(), "{problem}");
         for (a, b) in whole.iter().zip(&part) {
-            assert_ne!(b.verdict, Some(Verdict::Refused), "{problem}: {}", b.reason);
+            assert_ne!(b.verdict, Some(Verdict::Refused), "{problem}: {}", b.reason());
             // The same to the bit: draws do not depend on the ray.
             let of = |row: &trueflight::record::Row| {
                 (row.truth, row.mean, row.variance, row.experiment.lookups_per_draw)

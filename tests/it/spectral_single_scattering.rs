@@ -36,7 +36,7 @@ fn second(rows: &[Row<'static>], estimator: &str) -> Row<'static> {
 #[test]
 fn every_estimator_finds_the_answer_of_each_channel() {
     for row in DRAWN.iter() {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason());
     }
 }
 
@@ -73,7 +73,7 @@ fn walks_relative_to_one_walker_agree_with_theory() {
     let rows = rows(WITHOUT, 300_000);
     assert_eq!(rows.len(), 7 * 3);
     for row in &rows {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason);
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.experiment.label, row.reason());
         let is_bounded =
             row.experiment.label.contains("mis") || row.experiment.label.contains("history");
         assert_eq!(row.predicted_variance.is_none(), is_bounded, "{}", row.experiment.label);
@@ -182,7 +182,7 @@ fn what_lies_behind_a_wall_fails_no_correct_estimator() {
         layers("[1, 600, 1]")
     );
     for row in rows(&text, 400_000) {
-        assert_ne!(row.verdict, Some(Verdict::Fail), "{}: {}", row.channel, row.reason);
+        assert_ne!(row.verdict, Some(Verdict::Fail), "{}: {}", row.channel, row.reason());
     }
 }
 
@@ -204,7 +204,7 @@ fn thin_tails_of_two_colours_are_no_reason_to_refuse() {
         volume[0], volume[1]
     ));
     for row in &rows {
-        assert!(row.predicted_variance.is_some_and(f64::is_finite), "{}", row.reason);
+        assert!(row.predicted_variance.is_some_and(f64::is_finite), "{}", row.reason());
     }
 }
 

@@ -164,7 +164,7 @@ fn draws_meet_the_reference_values() {
                     let estimator = &row.experiment.label;
                     match row.verdict {
                         Some(Verdict::Fail | Verdict::Refused) | None => {
-                            wrong.push(format!("{light} {at}, {estimator}: {}", row.reason));
+                            wrong.push(format!("{light} {at}, {estimator}: {}", row.reason()));
                         }
                         Some(Verdict::Pass) => passed += 1,
                         Some(_) => {}

@@ -85,7 +85,7 @@ fn judge<'a>(rows: impl Iterator<Item = ([&'a str; 3], Row<'a>)>) -> (Vec<String
         let z = z(&row);
         let is_wrong = matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None);
         if is_wrong || z.abs() > 4.5 {
-            wrong.push(format!("{scene:?} {}: z = {z:.2}, {}", row.experiment.label, row.reason));
+            wrong.push(format!("{scene:?} {}: z = {z:.2}, {}", row.experiment.label, row.reason()));
         }
         squares.push(z * z);
     }

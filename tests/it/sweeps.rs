@@ -1,5 +1,6 @@
 //! Sweeps of the medium: at every value a case equals one with its numbers written out.
 
+use trueflight::case::sweep::SweptQuantity;
 use trueflight::catalogue::Page;
 use trueflight::catalogue::own_pages;
 use trueflight::media;
@@ -162,7 +163,7 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
     let options = options(1, 1000);
     let record = build::predicted(&Plan::new(&cases, &options));
     let case = &record.results.cases[0];
-    assert_eq!(case.sweep.as_ref().map(|sweep| &*sweep.what), Some("contrast"));
+    assert_eq!(case.sweep.as_ref().map(|sweep| sweep.what), Some(SweptQuantity::Contrast));
     let curves = curves::curves(&cases[0], options.seed);
     assert_eq!(curves.len(), 9, "three estimators, two channels and the luminance");
     for row in case.rows() {

@@ -30,7 +30,7 @@ fn correct_estimators_pass() {
          { local-majorant.sampling.local-majorants.segments = 8 }",
     );
     for row in rows(&text, 1_000_000) {
-        assert_eq!(verdict(&row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason);
+        assert_eq!(verdict(&row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason());
     }
 }
 
@@ -46,7 +46,7 @@ fn a_biased_estimator_that_claims_to_be_fair_is_caught() {
     for row in &rows {
         assert_eq!(verdict(row), Verdict::Fail, "{}", row.experiment.label);
         assert_eq!(finding(row, CheckId::Mean).verdict, Verdict::Fail);
-        assert!(row.reason.contains("off by"), "{}", row.reason);
+        assert!(row.reason().contains("off by"), "{}", row.reason());
     }
 }
 
@@ -60,8 +60,8 @@ fn a_declared_bias_passes_once_it_is_seen() {
         200_000,
     );
     for row in &rows {
-        assert_eq!(verdict(row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason);
-        assert!(row.reason.contains("biased-as-expected"), "{}", row.reason);
+        assert_eq!(verdict(row), Verdict::Pass, "{}: {}", row.experiment.label, row.reason());
+        assert!(row.reason().contains("biased-as-expected"), "{}", row.reason());
     }
     // Woodcock tracking below the majorant has min(σ_t, σ̂): T = exp(−.2 − .9·1.5 − .4·1.5).
     let forced = row(&rows, "woodcock");
@@ -74,7 +74,7 @@ fn a_declared_bias_passes_once_it_is_seen() {
 fn a_declared_bias_that_does_not_show_fails() {
     let rows = rows(&transmittance("{ ratio.expect = \"biased\" }"), 1_000_000);
     assert_eq!(verdict(&rows[0]), Verdict::Fail);
-    assert!(rows[0].reason.contains("expected a bias"), "{}", rows[0].reason);
+    assert!(rows[0].reason().contains("expected a bias"), "{}", rows[0].reason());
 }
 
 #[test]
@@ -82,12 +82,13 @@ fn a_run_that_is_too_short_says_how_long_it_should_be() {
     let text = transmittance("{ woodcock = {} }");
     let short = rows(&text, 1_000);
     assert_eq!(verdict(&short[0]), Verdict::Inconclusive);
-    let words: Vec<&str> = short[0].reason.split_whitespace().collect();
+    let reason = short[0].reason();
+    let words: Vec<&str> = reason.split_whitespace().collect();
     let needed: f64 = words
         .windows(2)
         .find(|pair| pair[1].starts_with("draws"))
         .and_then(|pair| pair[0].parse().ok())
-        .unwrap_or_else(|| panic!("no number of draws in {}", short[0].reason));
+        .unwrap_or_else(|| panic!("no number of draws in {reason}"));
     assert!(needed > 1_000.0);
     // The number is rounded to two digits; slightly more than that is enough.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of draws")]
@@ -118,8 +119,8 @@ fn a_sigma_hat_of_zero_is_welcome_where_nothing_is_left_to_sample() {
          sampling.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [1, 0, 1] } } }",
     );
     let rows = rows(&text, 200_000);
-    assert_ne!(verdict(&rows[0]), Verdict::Refused, "{}", rows[0].reason);
-    assert_ne!(verdict(&rows[0]), Verdict::Fail, "{}", rows[0].reason);
+    assert_ne!(verdict(&rows[0]), Verdict::Refused, "{}", rows[0].reason());
+    assert_ne!(verdict(&rows[0]), Verdict::Fail, "{}", rows[0].reason());
 }
 
 #[test]
@@ -145,7 +146,7 @@ fn steep_decays_are_resolved() {
     let row = &rows(text, 200_000)[0];
     assert!((row.truth.expect("known") * 600.0 - 1.0).abs() < 1e-12);
     assert!((row.experiment.predicted_lookups.expect("known") - 2.0).abs() < 1e-10);
-    assert_eq!(verdict(row), Verdict::Pass, "{}", row.reason);
+    assert_eq!(verdict(row), Verdict::Pass, "{}", row.reason());
 }
 
 /// Ratio tracking and the double particle without a control are the same estimator.

@@ -98,8 +98,11 @@ fn wrong(cases: &[(&str, &str, &str)], seeds: u64, is_wrong: impl Fn(&Row) -> bo
         let case = read("transmittance", lines, estimators);
         for (seed, draws) in (1..=seeds).flat_map(|seed| [(seed, 2_000), (seed, 40_000)]) {
             for row in judged(&case, seed, draws).into_iter().filter(&is_wrong) {
-                wrong
-                    .push(format!("{name}, seed {seed}, {}: {}", row.experiment.label, row.reason));
+                wrong.push(format!(
+                    "{name}, seed {seed}, {}: {}",
+                    row.experiment.label,
+                    row.reason()
+                ));
             }
         }
     }
@@ -116,7 +119,7 @@ fn passes(row: &Row) -> bool {
 
 #[test]
 fn wild_estimators_do_not_fail_and_say_why_they_are_undecided() {
-    none(&wrong(&WILD, 1, |row| fails(row) || !passes(row) && row.reason.is_empty()));
+    none(&wrong(&WILD, 1, |row| fails(row) || !passes(row) && row.reason().is_empty()));
 }
 
 #[test]
@@ -144,7 +147,7 @@ fn answers_that_are_off_by_the_tolerance_pass_once_in_a_hundred() {
             }
         }
         let drawn = run::draw(&plan, &|_| {});
-        for finding in evaluate::run(&plan, &drawn).into_iter().flat_map(|one| one.findings()) {
+        for finding in evaluate::run(&plan, &drawn).into_iter().flat_map(|one| one.findings) {
             // A check that could not pass anyway promises nothing.
             if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
                 asked += 1;
@@ -195,7 +198,7 @@ fn at_the_edge(case: &Case, what: &str, is_drawn: bool) -> Vec<String> {
         plan.experiments().filter_map(|(_, planned)| trouble(planned)).collect();
     if is_drawn {
         let failing = judged(case, 1, 1 << 13).into_iter().filter(fails);
-        wrong.extend(failing.map(|row| format!("{}: {}", row.experiment.label, row.reason)));
+        wrong.extend(failing.map(|row| format!("{}: {}", row.experiment.label, row.reason())));
     }
     wrong.into_iter().map(|wrong| format!("{what}, {wrong}")).collect()
 }

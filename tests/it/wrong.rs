@@ -69,7 +69,7 @@ fn wrong(sheet: &Path) -> (Vec<String>, usize) {
         if !right.refused.is_empty() {
             let is_refused = |row: &Row| row.verdict == Some(Verdict::Refused);
             let refused = predicted(&whole).into_iter().filter(is_refused);
-            wrong.extend(refused.map(|row| format!("{}: {}\n{whole}", row.name(), row.reason)));
+            wrong.extend(refused.map(|row| format!("{}: {}\n{whole}", row.name(), row.reason())));
         }
         count += right.mistakes.len() + right.refused.len();
         for line in &right.mistakes {
@@ -85,7 +85,7 @@ fn wrong(sheet: &Path) -> (Vec<String>, usize) {
             let (text, words) = changed(&whole, line);
             let rows = predicted(&text);
             let refused = rows.iter().filter(|row| row.verdict == Some(Verdict::Refused));
-            let reasons: Vec<&str> = refused.map(|row| row.reason.as_str()).collect();
+            let reasons: Vec<String> = refused.map(Row::reason).collect();
             if !reasons.iter().any(|reason| says(reason, &words)) {
                 wrong.push(format!("{line:?}: {reasons:?}"));
             }

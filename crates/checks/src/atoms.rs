@@ -124,7 +124,11 @@ fn questions(subject: &Subject) -> Vec<Question> {
     let Some(atoms) = atoms(subject.prediction) else { return Vec::new() };
     let values = Values::of(atoms, SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
-    Question::distribution("the shares of the values", (bins >= 2).then_some(values))
+    Question::distribution(
+        CheckId::Atoms,
+        "the shares of the values",
+        (bins >= 2).then_some(values),
+    )
 }
 
 #[cfg(test)]

@@ -69,7 +69,7 @@ impl Pilot {
 
 /// Question about the draws of an experiment.
 pub struct Question {
-    /// Its check; the catalogue sets it.
+    /// Its check.
     pub check: CheckId,
     /// Channel; `None` for the experiment as a whole.
     pub channel: Option<usize>,
@@ -84,20 +84,24 @@ pub struct Question {
 }
 
 impl Question {
-    /// Returns a question about the experiment as a whole, without the name of its check.
-    pub fn whole(what: &str, answer: impl Check + 'static) -> Self {
-        Self { channel: None, ..Self::channel(0, what, Box::new(answer)) }
+    /// Returns a question about the experiment as a whole.
+    pub fn whole(check: CheckId, what: &str, answer: impl Check + 'static) -> Self {
+        Self { channel: None, ..Self::channel(check, 0, what, Box::new(answer)) }
     }
 
     /// Returns a question about a distribution; none if there is no test.
-    pub fn distribution(what: &str, of: Option<impl DistributionTest + 'static>) -> Vec<Self> {
-        of.into_iter().map(|one| Self::whole(what, one)).collect()
+    pub fn distribution(
+        check: CheckId,
+        what: &str,
+        of: Option<impl DistributionTest + 'static>,
+    ) -> Vec<Self> {
+        of.into_iter().map(|one| Self::whole(check, what, one)).collect()
     }
 
     /// Returns a question about one channel.
-    pub fn channel(channel: usize, what: &str, answer: Box<dyn Check>) -> Self {
+    pub fn channel(check: CheckId, channel: usize, what: &str, answer: Box<dyn Check>) -> Self {
         Self {
-            check: CheckId::Mean,
+            check,
             channel: Some(channel),
             what: what.to_owned(),
             answer,

@@ -57,7 +57,7 @@ pub const CHECK: CheckKind =
 fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
-    Question::distribution(WHAT, classes.filter(|law| bins(law) >= 2))
+    Question::distribution(CheckId::Counts, WHAT, classes.filter(|law| bins(law) >= 2))
 }
 
 /// Returns the tests of foreign draws.

@@ -85,7 +85,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
             Some(scalar) => Box::new(scalar),
             None => Box::new(Untestable("its variance overflows".into())),
         };
-        Question::channel(channel, &what, answer)
+        Question::channel(CheckId::Covariance, channel, &what, answer)
     });
     questions.collect()
 }

@@ -133,7 +133,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     if is_long {
         let rounding = rounding_of(subject);
         let increments = Increments::of(subject.prediction, subject.fixed, rounding);
-        return Question::distribution("the curve along one walk", increments);
+        return Question::distribution(CheckId::Curve, "the curve along one walk", increments);
     }
     let scale = scale(subject.prediction);
     let has_spread = |increment: &Increment| {
@@ -143,7 +143,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     steps
         .map(|(j, increment)| {
             let step = step(subject, j, &scale, increment);
-            Question::channel(j, STEP, Box::new(step))
+            Question::channel(CheckId::Curve, j, STEP, Box::new(step))
         })
         .collect()
 }

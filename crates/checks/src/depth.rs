@@ -42,7 +42,7 @@ pub const CHECK: CheckKind = CheckKind::new(CheckId::Depth, questions).of_foreig
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
     let tails = Classes::of(subject.prediction).map(Empirical);
-    Question::distribution("the tails of the distances", tails)
+    Question::distribution(CheckId::Depth, "the tails of the distances", tails)
 }
 
 /// Returns the tests of foreign draws.

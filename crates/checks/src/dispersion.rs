@@ -66,5 +66,9 @@ fn questions(subject: &Subject) -> Vec<Question> {
     let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= MIN_BLOCKS;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let means = BlockMeans { mean, scale, least: needed };
-    Question::distribution("the spread of the blocks' means", enough.then_some(means))
+    Question::distribution(
+        CheckId::Dispersion,
+        "the spread of the blocks' means",
+        enough.then_some(means),
+    )
 }

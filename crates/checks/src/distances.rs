@@ -194,7 +194,7 @@ const WHAT: &str = "the distribution of the distances";
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
-    Question::distribution(WHAT, Bins::of(subject.prediction))
+    Question::distribution(CheckId::Distances, WHAT, Bins::of(subject.prediction))
 }
 
 /// Returns the tests of foreign draws.

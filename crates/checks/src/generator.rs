@@ -42,7 +42,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     if !random {
         return Vec::new();
     }
-    vec![Question::whole("the streams of random numbers", Inspection(p_value))]
+    vec![Question::whole(CheckId::Generator, "the streams of random numbers", Inspection(p_value))]
 }
 
 /// Returns the words of a block as the draws use them.

@@ -46,5 +46,9 @@ fn questions(subject: &Subject) -> Vec<Question> {
     if !subject.has_invariant {
         return Vec::new();
     }
-    vec![Question::whole("the balance of each walk", Always::new(largest, rounding(0.0)))]
+    vec![Question::whole(
+        CheckId::Invariant,
+        "the balance of each walk",
+        Always::new(largest, rounding(0.0)),
+    )]
 }

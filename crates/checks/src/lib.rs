@@ -134,7 +134,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let asked = asking.flat_map(|kind| {
         let expects_bias = subject.expect_biased && kind.id == CheckId::Mean;
         let questions = (kind.questions)(subject).into_iter();
-        questions.map(move |question| Question { check: kind.id, expects_bias, ..question })
+        questions.map(move |question| Question { expects_bias, ..question })
     });
     asked.collect()
 }

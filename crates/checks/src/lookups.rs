@@ -35,14 +35,22 @@ fn questions(subject: &Subject) -> Vec<Question> {
             y.extend(counts.iter().map(|&m| f64::from(m) * scale - 1.0));
         };
         let observe = Observe::Lookups(Box::new(observe));
-        Question::whole(what, Scalar::new(subject, lookups.of(mean, mean), observe))
+        Question::whole(
+            CheckId::Lookups,
+            what,
+            Scalar::new(subject, lookups.of(mean, mean), observe),
+        )
     } else {
         let largest = move |draws: &DrawBuffer| {
             let counts = draws.lookups.iter();
             counts.fold(0.0, |most: f64, &m| most.max((f64::from(m) - mean).abs()))
         };
         // The predicted number may be rounded; a draw that differs by one is far beyond that.
-        Question::whole(what, Always { is_of_lookups: true, ..Always::new(largest, 0.5) })
+        Question::whole(
+            CheckId::Lookups,
+            what,
+            Always { is_of_lookups: true, ..Always::new(largest, 0.5) },
+        )
     };
     vec![question]
 }

@@ -50,7 +50,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .map(|(index, channel)| {
-            Question::channel(index, "the mean", answer(subject, index, channel))
+            Question::channel(CheckId::Mean, index, "the mean", answer(subject, index, channel))
         })
         .collect()
 }

@@ -19,5 +19,5 @@ pub const CHECK: CheckKind = CheckKind::new(CheckId::Numeric, questions).of_bias
 
 /// Returns the questions of this check.
 fn questions(_: &Subject) -> Vec<Question> {
-    vec![Question::whole("every draw", Always::new(largest, 0.0))]
+    vec![Question::whole(CheckId::Numeric, "every draw", Always::new(largest, 0.0))]
 }

@@ -41,7 +41,7 @@ pub const CHECK: CheckKind =
 fn questions(subject: &Subject) -> Vec<Question> {
     let Some(resolution) = Resolution::of(subject.prediction) else { return Vec::new() };
     let look = Inspection(move |inspected: &Inspected| p_value(inspected, &resolution));
-    vec![Question::whole(WHAT, look)]
+    vec![Question::whole(CheckId::Resolution, WHAT, look)]
 }
 
 /// Returns the tests of foreign draws.

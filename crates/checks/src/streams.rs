@@ -76,5 +76,5 @@ fn questions(subject: &Subject) -> Vec<Question> {
     let enough = enough && by_one <= MAX_BY_ONE;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let sums = IndexSums { mean, scale, kurtosis };
-    Question::distribution("the sums across streams", enough.then_some(sums))
+    Question::distribution(CheckId::Streams, "the sums across streams", enough.then_some(sums))
 }

@@ -30,7 +30,12 @@ fn questions(subject: &Subject) -> Vec<Question> {
     let channels = subject.prediction.channels.iter().enumerate();
     channels
         .filter_map(|(index, channel)| {
-            Some(Question::channel(index, "the variance", answer(subject, index, channel)?))
+            Some(Question::channel(
+                CheckId::Variance,
+                index,
+                "the variance",
+                answer(subject, index, channel)?,
+            ))
         })
         .collect()
 }

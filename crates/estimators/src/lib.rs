@@ -45,7 +45,7 @@ pub use crate::setup::{Fields, Setup};
 
 pub use crate::draw::{Draw, DrawBuffer, Request};
 pub use crate::own::EstimatorReader;
-pub use traits::{Inputs, Traits};
+pub use traits::{Inputs, Knowledge, Traits};
 pub use transmittance_curve::RayView;
 pub use trial::{Experiment, Kernel};
 

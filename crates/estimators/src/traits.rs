@@ -21,6 +21,46 @@ impl Inputs {
     pub const BOTH: Self = Self { sampling: true, control: true };
 }
 
+/// Knowledge of a medium beside lookups, which an estimator, σ̂ or a control needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Knowledge {
+    /// The optical depth τ.
+    OpticalDepth,
+    /// The distance at which the optical depth has a given value.
+    InverseDepth,
+    /// The minimum of σ_t.
+    Minimum,
+    /// The maximum of |σ_t − σ_c| on parts of a ray.
+    LocalMaxima,
+    /// Bounds of σ_t in the cells of a grid.
+    Bounds,
+}
+
+impl Knowledge {
+    /// Returns whether the answer follows from it.
+    pub fn has_the_answer(self) -> bool {
+        matches!(self, Self::OpticalDepth | Self::InverseDepth)
+    }
+
+    /// Returns several in words, as in `τ, max |σ_t − σ_c|`.
+    pub fn list(all: &[Self]) -> String {
+        all.iter().map(|one| one.words()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the quantity as tables name it.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::OpticalDepth => "τ",
+            Self::InverseDepth => "inverse of τ",
+            Self::Minimum => "min σ_t",
+            Self::LocalMaxima => "max |σ_t − σ_c|",
+            Self::Bounds => "bounds of σ_t",
+        }
+    }
+}
+
 /// Properties of an estimator with its own settings.
 pub struct Traits {
     /// Inputs that it takes.
@@ -37,8 +77,8 @@ pub struct Traits {
     pub default_control: Option<Box<dyn controls::Recipe>>,
     /// Rule at a collision, if a draw is a product of its factors.
     pub collisions: Option<Collisions>,
-    /// Quantity of the medium that it needs beside lookups, σ̂ and control, such as `τ`.
-    pub needs: Option<&'static str>,
+    /// Knowledge of the medium that it needs beside lookups, σ̂ and control.
+    pub needs: Option<Knowledge>,
     /// True if draws have a [`Draw::defect`](crate::Draw::defect).
     pub has_invariant: bool,
     /// True if σ̂ may be 0 wherever the residual is: collisions there affect only the cost.

@@ -15,23 +15,50 @@ const MAX_DIGITS: usize = 12;
 
 /// A measured quantity beside its expected value.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Deviation {
     /// The measured value.
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub measured: f64,
     /// The value that theory expects, in the same unit.
+    #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
     pub expected: f64,
     /// The deviation in standard errors; `None` where the standard error is not known.
     pub z: Option<f64>,
     /// Number of measured draws.
     pub draws: u64,
-    /// What is counted as a draw, in the plural: `draws`, `averages`, `passes`.
-    pub unit: &'static str,
+    /// Unit in which draws are counted.
+    pub unit: DrawUnit,
+}
+
+/// Unit in which draws are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum DrawUnit {
+    /// Single draws.
+    Draws,
+    /// Averages of several draws.
+    Averages,
+    /// Whole images.
+    Passes,
+}
+
+impl DrawUnit {
+    /// The word, in the plural.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Draws => "draws",
+            Self::Averages => "averages",
+            Self::Passes => "passes",
+        }
+    }
 }
 
 impl Deviation {
     /// The deviation of a mean over `draws` draws.
     pub fn new(measured: f64, expected: f64, draws: u64) -> Self {
-        Self { measured, expected, z: None, draws, unit: "draws" }
+        Self { measured, expected, z: None, draws, unit: DrawUnit::Draws }
     }
 
     /// Deviation with its number of standard errors, if that is a finite number.
@@ -60,7 +87,7 @@ impl fmt::Display for Deviation {
         if let Some(z) = self.z {
             write!(f, ", z = {}", score(z))?;
         }
-        write!(f, " over {} {unit}", count(draws))
+        write!(f, " over {} {}", count(draws), unit.word())
     }
 }
 
@@ -123,7 +150,8 @@ mod tests {
     fn without_an_expected_value_or_a_standard_error_they_are_left_out() {
         let zero = Deviation::new(0.25, 0.0, 1000).with_z(f64::INFINITY).to_string();
         assert_eq!(zero, "+0.25 (measured 0.250, expected 0) over 1000 draws");
-        let equal = Deviation { unit: "averages", ..Deviation::new(1.0, 1.0, 16) }.to_string();
+        let equal =
+            Deviation { unit: DrawUnit::Averages, ..Deviation::new(1.0, 1.0, 16) }.to_string();
         assert_eq!(equal, "0 % (measured 1.00, expected 1.00) over 16 averages");
     }
 }

@@ -23,6 +23,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use gate::CheckId;
 use serde::{Deserialize, Serialize};
 
 use super::{Baseline, ChannelId, Entry, Evidence};
@@ -133,7 +134,9 @@ pub struct Drift {
     /// The experiment.
     pub id: ChannelId,
     /// The check.
-    pub check: String,
+    pub check: CheckId,
+    /// The quantity, as in `the mean`.
+    pub what: String,
     /// ln E of all runs together.
     pub ln_e: f64,
     /// The limit.
@@ -287,15 +290,15 @@ fn multiply(
     for entry in next.entries.iter_mut().take(run.entries.len()) {
         let stored = before.get(&entry.id).filter(|stored| stored.case == entry.case);
         let Some(stored) = stored else { continue };
-        for Evidence { check, ln_e } in &mut entry.checks {
-            let Some(earlier) = stored.checks.iter().find(|earlier| earlier.check == *check) else {
-                continue;
-            };
+        for Evidence { check, what, ln_e } in &mut entry.checks {
+            let is_same = |earlier: &&Evidence| earlier.check == *check && earlier.what == *what;
+            let Some(earlier) = stored.checks.iter().find(is_same) else { continue };
             *ln_e += earlier.ln_e;
             multiplied += 1;
             if *ln_e >= limit {
                 let (id, command) = (entry.id.clone(), entry.command.clone());
-                drifts.push(Drift { id, check: check.clone(), ln_e: *ln_e, limit, command });
+                let (check, what) = (*check, what.clone());
+                drifts.push(Drift { id, check, what, ln_e: *ln_e, limit, command });
             }
         }
     }

@@ -13,6 +13,7 @@ use std::fmt::{self, Display, Formatter};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use gate::CheckId;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -101,8 +102,10 @@ pub struct Entry {
 /// The evidence of one check against the experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Name of the check and of its quantity.
-    pub check: String,
+    /// The check.
+    pub check: CheckId,
+    /// The quantity, as in `the mean`.
+    pub what: String,
     /// ln E.
     pub ln_e: f64,
 }
@@ -111,12 +114,11 @@ impl Baseline {
     /// Takes the results of a run for storing; `cases` are those of its plan.
     pub fn of(record: &Record, cases: &[Case], executable: &str) -> Self {
         let results = &record.results;
-        let digest = |name: &str| cases.iter().find(|case| case.name == name).map(|c| c.digest);
         let mut entries = Vec::new();
         for case in &results.cases {
-            let digest = format!("{:016x}", digest(&case.name).unwrap_or(0));
+            let own = cases.iter().find(|own| own.name == case.name);
             let drawn = case.rows().filter(|row| row.experiment.drawn.is_some());
-            entries.extend(drawn.map(|row| Entry::of(&row, results.seed, &digest)));
+            entries.extend(drawn.map(|row| Entry::of(&row, results.seed, own)));
         }
         Self {
             schema: SCHEMA,
@@ -204,8 +206,9 @@ impl Entry {
             && self.mean.is_none_or(f64::is_finite)
     }
 
-    fn of(row: &Row, seed: u64, digest: &str) -> Self {
+    fn of(row: &Row, seed: u64, case: Option<&Case>) -> Self {
         let (experiment, is_first) = (row.experiment, row.is_first());
+        let learns = |case: &Case| case.scenario.learns(experiment.listed);
         let draws = experiment.draws.unwrap_or(0);
         // A predicted number of lookups without spread has deviation 0.
         let spread =
@@ -213,14 +216,14 @@ impl Entry {
         let checks = row.own_findings().filter(|found| !found.expects_bias);
         let checks = checks.filter_map(|found| {
             let ln_e = found.gate?.ln_e;
-            let check = format!("{}: {}", found.check, found.what);
-            ln_e.is_finite().then_some(Evidence { check, ln_e })
+            let (check, what) = (found.check, found.what.clone());
+            ln_e.is_finite().then_some(Evidence { check, what, ln_e })
         });
         Self {
             id: ChannelId { experiment: experiment.id.clone(), channel: row.channel.clone() },
-            case: digest.to_owned(),
+            case: format!("{:016x}", case.map_or(0, |case| case.digest)),
             seed,
-            learns: experiment.id.sampling.kind.contains("pilot"),
+            learns: experiment.id.sampling.constant.is_none() && case.is_some_and(learns),
             draws,
             mean: row.mean,
             variance: row.variance,

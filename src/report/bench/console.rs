@@ -37,7 +37,7 @@ fn block(text: &mut String, pen: Pen, bench: &Bench, case: &BenchCase) {
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts, pen.width)));
     let rows: Vec<Joined> = case.rows.iter().map(|row| Joined { bench, case, row }).collect();
     let mut grid = grid(&rows, COLUMNS);
-    if let Some(head) = swept_apart(case.swept.as_deref()) {
+    if let Some(head) = swept_apart(case.swept) {
         let digits = case.digits();
         let text =
             |row: &BenchRow| row.id.swept_value().map(|x| digits.text(x)).unwrap_or_default();

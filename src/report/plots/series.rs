@@ -4,6 +4,7 @@ use crate::record::{CaseRecord, Compared, Curve, CurvePoint, Digits, Row, Sweep,
 use crate::report::lists::joined;
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::Style;
+use estimators::Knowledge;
 use numeric::digits::count;
 use std::ops::RangeInclusive;
 
@@ -52,9 +53,10 @@ impl Series<'_> {
     pub fn entry(&self) -> Entry {
         let Style { colour, dash, marker } = self.style;
         let measured = self.rows.iter().any(|row| row.experiment.draws.is_some());
-        let mut needs = self.rows.iter().map(|row| row.experiment.needs.as_str());
+        let mut needs = self.rows.iter().map(|row| &row.experiment.needs);
         let needs = needs.find(|needs| !needs.is_empty());
-        let marks = marks(needs.unwrap_or_default(), self.setup_lookups(), self.is_fixed());
+        let needs = needs.map_or_else(String::new, |needs| Knowledge::list(needs));
+        let marks = marks(&needs, self.setup_lookups(), self.is_fixed());
         Entry {
             label: format!("{}{marks}", self.label),
             line: Some((dash, 2.0)),
@@ -283,7 +285,7 @@ mod tests {
     }
 
     fn sweep() -> Sweep {
-        let [what, axis] = [const { String::new() }; 2];
+        let (what, axis) = (SweptQuantity::Density, String::new());
         Sweep { what, axis, log: false, z_limit: None, curves: vec![] }
     }
 
@@ -365,16 +367,17 @@ mod tests {
 
     #[test]
     fn what_an_estimator_needs_stands_in_the_legend() {
-        let with = |listed, name: &str, needs: &str, setup: u64, swept: Option<f64>| {
-            let (needs, setup_lookups) = (needs.to_owned(), Some(setup));
-            ExperimentRecord { needs, setup_lookups, ..one(listed, name, "", swept) }
-        };
+        let with =
+            |listed, name: &str, needs: Option<Knowledge>, setup: u64, swept: Option<f64>| {
+                let (needs, setup_lookups) = (needs.into_iter().collect(), Some(setup));
+                ExperimentRecord { needs, setup_lookups, ..one(listed, name, "", swept) }
+            };
         let case = case(vec![
-            with(0, "a", "τ", 0, Some(1.0)),
-            with(1, "b", "min σ_t", 0, None),
-            with(2, "c", "", 4, Some(1.0)),
-            with(2, "c", "", 20, Some(2.0)),
-            with(3, "d", "", 0, Some(1.0)),
+            with(0, "a", Some(Knowledge::OpticalDepth), 0, Some(1.0)),
+            with(1, "b", Some(Knowledge::Minimum), 0, None),
+            with(2, "c", None, 4, Some(1.0)),
+            with(2, "c", None, 20, Some(2.0)),
+            with(3, "d", None, 0, Some(1.0)),
         ]);
         let labels: Vec<String> =
             collect(&case, &sweep()).iter().map(|series| series.entry().label).collect();

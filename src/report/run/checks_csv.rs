@@ -32,7 +32,7 @@ table! {
         "what": "Quantity" = |row| &row.found.what;
         "channel": "Which value of a draw; empty for the experiment as a whole" = |row| &row.found.channel;
         "verdict": "Result of the check" = |row| row.found.verdict.word();
-        "reason": "Reason of the verdict; empty for a plain pass" = |row| &row.found.reason;
+        "reason": "Reason of the verdict; empty for a plain pass" = |row| row.found.words();
         "tolerance" ["ε", "", Percent]: "Tolerance ε of the gate, relative" = |row| row.gate(|gate| gate.tolerance);
         "variance_of_y": "Variance V of the gate, relative" = |row| row.gate(|gate| gate.variance);
         "planned": "Number of planned draws, 27 V/ε²" = |row| row.gate(|gate| gate.planned);

@@ -172,10 +172,10 @@ fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool 
     let mut grid = Grid { columns: names.into_iter().chain(rest).collect() };
     grid.fit(pen.width);
     let rest = pen.width.saturating_sub(grid.width() + 2);
-    let longest = rows.iter().map(|row| layout::width(&row.reason)).max().unwrap_or(0);
+    let longest = rows.iter().map(|row| layout::width(&row.reason())).max().unwrap_or(0);
     let beside = pen.width >= WIDE && rest >= MIN_WIDTH && longest > 0;
     if beside {
-        let cells = rows.iter().map(|row| Field::plain(end_elided(&row.reason, rest)));
+        let cells = rows.iter().map(|row| Field::plain(end_elided(&row.reason(), rest)));
         grid.push("reason", cells.collect());
     }
     text.push_str(&grid.render(pen));
@@ -245,9 +245,9 @@ fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, roo
     let Block { case, rows, labels, .. } = block;
     // Failures follow below the tables.
     let is_told = |row: &&Row| view == View::Run && row.verdict == Some(Verdict::Fail);
-    let without = |row: &&Row| layout::width(&row.reason) > room && !is_told(row);
+    let without = |row: &&Row| layout::width(&row.reason()) > room && !is_told(row);
     let notes = grouped(rows.iter().filter(without), |one, other| {
-        one.reason == other.reason && one.experiment.label == other.experiment.label
+        one.reason() == other.reason() && one.experiment.label == other.experiment.label
     });
     for row in rows.iter().filter(|row| row.experiment.same_as.is_some()) {
         let positions = views::positions(case, &[row], *labels);
@@ -265,7 +265,7 @@ fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, roo
         let positions = views::positions(case, &rows, *labels);
         let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
         let word = if status.is_empty() { "note" } else { &status };
-        let note = format!("{word} {}{at}: {}", row.experiment.label, row.reason);
+        let note = format!("{word} {}{at}: {}", row.experiment.label, row.reason());
         pen.note(text, &note, (word, views::status(row, view).paint));
     }
     // Commands are not wrapped, so that they can be copied.

@@ -14,18 +14,24 @@ pub fn changes(comparison: &Comparison) -> Changes {
 
 /// Returns the experiments that were left out, by the reason.
 fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[ChannelId])> {
-    let LeftOut { relearned, blunt, unpredicted, uncounted, brief } = &comparison.left_out;
+    let LeftOut { relearned, blunt, unpredicted, uncounted, .. } = &comparison.left_out;
     let all = [
         ("variance not compared, too few draws or too heavy a tail", blunt),
         ("variance not compared, theory has no error of it", unpredicted),
         ("lookups not compared, theory has no error of them", uncounted),
         ("variance and lookups not compared, σ\u{302} learned from other pilot draws", relearned),
-        ("time not compared, less than 0.1 s", brief),
+    ];
+    not_empty(all.into_iter().chain(without_times(comparison)))
+}
+
+/// Returns the experiments of which no time was compared, by the reason.
+fn without_times(comparison: &Comparison) -> [(&'static str, &Vec<ChannelId>); 4] {
+    [
+        ("time not compared, less than 0.1 s", &comparison.left_out.brief),
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),
         ("not compared, the case was rewritten", &comparison.rewritten),
-    ];
-    not_empty(all)
+    ]
 }
 
 /// Returns the reason why nothing was compared; `None` if something was.
@@ -39,12 +45,8 @@ pub fn nothing(comparison: &Comparison) -> Option<String> {
 
 /// Returns the reason why no time was compared; `None` if one was.
 pub fn no_times(comparison: &Comparison) -> Option<String> {
-    let is_about_all = |why: &str| !why.starts_with("variance") && !why.starts_with("lookups");
-    (comparison.times == 0).then(|| {
-        let mut lists = left_out(comparison);
-        lists.retain(|(why, _)| is_about_all(why));
-        format!("no time was compared: {}", counts(&lists))
-    })
+    (comparison.times == 0)
+        .then(|| format!("no time was compared: {}", counts(&not_empty(without_times(comparison)))))
 }
 
 /// Returns the extent of the comparison, its conditions, and the experiments that were left out.
@@ -83,12 +85,12 @@ pub fn all(comparison: &Comparison) -> Vec<Difference> {
     all
 }
 
-fn drift(Drift { id, check, ln_e, limit, command }: &Drift) -> Difference {
+fn drift(Drift { id, check, what, ln_e, limit, command }: &Drift) -> Difference {
     let shown = format!("ln E = {} ≥ {}", evidence(*ln_e), short(*limit, 3));
     Difference {
         is_worse: true,
         experiment: id.to_string(),
-        quantity: check.clone(),
+        quantity: format!("{check}: {what}"),
         values: [None, Some((*ln_e, shown))],
         ratio: None,
         interval: None,

@@ -1,5 +1,6 @@
 //! Failures of a run, finding by finding, in words that the console and the reports share.
 
+use crate::case::sweep::SweptQuantity;
 use crate::record::{Finding, Record, Row, Verdict};
 use crate::report::fields::{Shown, Table, shown};
 use crate::report::lists::joined;
@@ -34,16 +35,15 @@ pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
 
 /// Returns the findings that gave a row its verdict.
 pub fn of_row(row: Row<'_>, seed: u64) -> Vec<Failure<'_>> {
-    let deciding = row.findings().filter(|finding| Some(finding.verdict) == row.verdict);
     let mut failures: Vec<Failure> =
-        deciding.map(|finding| Failure { row, finding: Some(finding), seed }).collect();
+        row.deciding().map(|finding| Failure { row, finding: Some(finding), seed }).collect();
     if failures.is_empty() {
         failures.push(Failure { row, finding: None, seed });
     }
     failures
 }
 
-impl<'a> Failure<'a> {
+impl Failure<'_> {
     /// Returns its experiment; without a channel if it concerns the experiment as a whole.
     pub fn experiment(&self) -> String {
         let channel = self.finding.map_or(&self.row.values.channel, |finding| &finding.channel);
@@ -60,12 +60,6 @@ impl<'a> Failure<'a> {
         self.check().map_or("", CheckId::name)
     }
 
-    /// Returns the reason, with the most important numbers.
-    pub fn reason(&self) -> &'a str {
-        let reason = self.finding.map_or("", |finding| finding.reason.as_str());
-        if reason.is_empty() { self.row.values.reason.as_str() } else { reason }
-    }
-
     /// Returns the address of the random numbers: `seed 1, block 3`.
     pub fn place(&self) -> String {
         let block = self.finding.and_then(|finding| finding.block);
@@ -76,7 +70,8 @@ impl<'a> Failure<'a> {
     /// Returns everything but the command, on one line.
     pub fn line(&self) -> String {
         let experiment = self.experiment();
-        let parts = [self.row.case.name.as_str(), &experiment, self.check_name(), self.reason()];
+        let reason = self.reason();
+        let parts = [self.row.case.name.as_str(), &experiment, self.check_name(), &reason];
         format!("{} ({})", joined(parts, ": "), self.place())
     }
 
@@ -87,7 +82,7 @@ impl<'a> Failure<'a> {
             |name: &str, text: String| (!text.is_empty()).then(|| format!("{name}: {text}"));
         let line = Line { row, seed };
         let finding = finding.map(|found| FindingRow { of: row, found });
-        let reason = finding.is_none().then(|| self.reason().to_owned());
+        let reason = finding.is_none().then(|| self.reason());
         let stream = row.experiment.stream.map(|stream| stream.to_string());
         let mut lines = vec![
             known("case", row.case.name.clone()),
@@ -156,8 +151,8 @@ pub fn pattern(row: &Row) -> Pattern {
 
 /// Returns the end of a sweep of σ̂ if an estimator fails at that end only, else [`Place::Anywhere`].
 fn place(row: &Row) -> Place {
-    let is_of_sampling = |what: &str| ["sampling", "sampling-scale"].contains(&what);
-    if !row.case.sweep.as_ref().is_some_and(|sweep| is_of_sampling(&sweep.what)) {
+    let swept = row.case.sweep.as_ref().map(|sweep| sweep.what);
+    if !matches!(swept, Some(SweptQuantity::Sampling | SweptQuantity::SamplingScale)) {
         return Place::Anywhere;
     }
     let is_same = |other: &Row| {

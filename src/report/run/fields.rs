@@ -1,11 +1,13 @@
 //! Fields of the rows of a run: the columns of `summary.csv`, of the files of the cases, of `--format csv|json`, of the
 //! console, of the page and of the manual.
 
-use crate::record::{Score, Verdict};
+use crate::record::{Best, Score, Verdict};
 use crate::report::fields::table;
 use crate::report::run::summary_csv::Line;
+use estimators::Knowledge;
 use numeric::Grade;
 use numeric::digits::short;
+use theory::prediction::search::Kind;
 
 /// Fields that differ from run to run, which files of results alone leave out.
 pub const TIMED: [&str; 3] = ["seconds", "ns_per_lookup", "reused"];
@@ -83,8 +85,8 @@ table! {
         "predicted_log10_ltuv" ["lg LTUV", "", Signed]: "log₁₀ of variance × lookups in theory" = |line| line.predicted_log10_ltuv();
         "setup_lookups" ["setup", "", Plain]: "Lookups of a ray before its first draw" = |line| line.experiment.setup_lookups;
         "draws_per_ray": "Number of draws that share the setup lookups" = |line| line.case.draws_per_ray;
-        "needs": "Knowledge of the medium beside lookups, as its optical depth τ" = |line| &line.experiment.needs;
-        "best_kind" ["best is", "", Plain]: "Kind of the best σ̂: an optimum, or a share of a limit" = |line| line.best_kind();
+        "needs": "Knowledge of the medium beside lookups, as its optical depth τ" = |line| Knowledge::list(&line.experiment.needs);
+        "best_kind" ["best is", "", Plain]: "Kind of the best σ̂: an optimum, or a share of a limit" = |line| line.best.as_ref().map_or("", kind);
         "best_limit" ["limit", "", Fixed(4)]: "Limit of the figure of merit, if it rises with σ̂ to one" = |line| line.best_limit();
         "lookups_error" ["N error", "", Fixed(2)]: "Bound on the relative error of the expected lookups" = |line| line.experiment.lookups_error;
         "covariance" ["Cov next", "of the case, squared", Fixed(4)]: "Covariance of one draw with the next channel in theory" = |line| line.covariance;
@@ -102,7 +104,7 @@ table! {
         "variance_ratio" ["s²/V", "", Places(3)]: "Measured variance over that of theory" = |line| line.variance_ratio();
         "lookups_spread" ["± σ", "", Fixed(4)]: "Standard deviation of the number of lookups in theory"
             = |line| line.experiment.lookups_variance.map(f64::sqrt);
-        "needed" ["needed", "", Enough]: "Number of draws that a pass takes, where the plan has too few" = |line| line.needed_draws;
+        "needed" ["needed", "", Enough]: "Number of draws that a pass takes, where the plan has too few" = |line| line.foreseen.as_ref().and_then(|foreseen| foreseen.needed);
         "best_sampling_marked" ["best σ̂", "1/length", Fixed(4)]: "Best σ̂, marked where its figure of merit is 90 % of a limit"
             = |line| best_sampling(line);
         "best_fom_marked" ["best FoM", "", Fixed(4)]: "Figure of merit at the best σ̂, which is infinite without a variance"
@@ -112,6 +114,11 @@ table! {
         "largest_ln_e" ["ln E", "", Short(4)]: "Largest evidence against the estimator, of all checks: it fails at the limit of the run"
             = |line| line.largest_ln_e();
     }
+}
+
+/// Returns the kind of a best σ̂.
+pub fn kind(best: &Best) -> &'static str {
+    if best.kind == Kind::NearLimit { "90 % of the limit" } else { best.kind.words() }
 }
 
 /// Returns the best σ̂, marked if it is a share of a limit; empty if it was not searched.

@@ -100,7 +100,7 @@ fn trouble(row: Row, seed: u64, inconclusive: Inconclusive) -> Option<Trouble> {
         let details = failures::of_row(row, seed);
         details.iter().map(Failure::details).collect::<Vec<_>>().join("\n")
     };
-    trouble_of(row.verdict.unwrap_or(Verdict::Pass), &row.reason, inconclusive, details)
+    trouble_of(row.verdict.unwrap_or(Verdict::Pass), &row.reason(), inconclusive, details)
 }
 
 /// Returns the result of a verdict that is no pass, with its reason; a fail or an inconclusive verdict has details.

@@ -52,7 +52,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
             failure.experiment(),
             failure.check_name().to_owned(),
             failure.place(),
-            failure.reason().to_owned(),
+            failure.reason(),
         ];
         let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
     }

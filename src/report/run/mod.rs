@@ -12,6 +12,7 @@ pub mod fields;
 pub mod html;
 pub mod junit;
 pub mod markdown;
+mod reasons;
 pub mod record_json;
 pub mod summary_csv;
 pub mod sweep_plot;

@@ -70,7 +70,7 @@ const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
 pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
     let series = collect(case, sweep);
     let x = x_axis(sweep, &series);
-    let of_medium = ["density", "albedo-scale", "contrast"].contains(&&*sweep.what);
+    let of_medium = sweep.what.varies_medium();
     let has_setup = series.iter().any(|one| one.setup_lookups().is_some());
     let efficiency = match (of_medium, has_setup) {
         (true, false) => LOOKUPS_TO_UNIT_VARIANCE,

@@ -2,7 +2,6 @@
 
 use super::{ANY, SINES, asked, request};
 use crate::common::{failing, none, rows};
-use trueflight::advise::candidates::RECIPE;
 use trueflight::advise::profile::{PLACES, STEPS, Steps};
 use trueflight::advise::{Costs, Group};
 use trueflight::theory::collisions::Collisions;
@@ -124,7 +123,7 @@ fn rows_of_profiles_are_never_worse_and_agree_with_draws() {
             assert!(profile.over_constant >= 0.999, "{profile:?}");
             assert!(profile.over_local.is_none_or(|gain| gain > 0.95), "{profile:?}");
         }
-        let of = advice.rows.iter().filter(|row| row.lines.contains(RECIPE));
+        let of = advice.rows.iter().filter(|row| row.lines.contains("sampling.piecewise-constant"));
         for row in of {
             assert_eq!(row.group, Group::Informed);
             none(&failing(&rows(&format!("{SINES}{}", row.lines), 100_000)));

@@ -9,6 +9,7 @@ use trueflight::case::Source;
 use trueflight::draw::run;
 use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
+use trueflight::gate::CheckId;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
@@ -199,7 +200,7 @@ fn a_small_bias_adds_up_over_runs() {
         if !comparison.drifts.is_empty() {
             let drift = &comparison.drifts[0];
             assert!(
-                drift.id.experiment.estimator.name == "ratio" && drift.check.contains("mean"),
+                drift.id.experiment.estimator.name == "ratio" && drift.check == CheckId::Mean,
                 "{drift:?}"
             );
             assert!(comparison.fails() && drift.ln_e >= limit);

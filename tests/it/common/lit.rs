@@ -53,7 +53,7 @@ pub fn predictions(cases: &[(String, String)], can_be: impl Fn(&Row, f64, f64) -
         for row in predicted(text) {
             let place = format!("{}: {place}", row.experiment.label);
             if row.verdict == Some(Verdict::Refused) {
-                wrong.extend((row.reason.len() < 10).then_some(place));
+                wrong.extend((row.reason().len() < 10).then_some(place));
                 continue;
             }
             count += 1;

@@ -109,7 +109,7 @@ pub fn not_passing(rows: &[Row], checks: &[CheckId]) -> Vec<String> {
             let verdict = row.verdict;
             wrong.push(format!(
                 "{name} {channel}: {verdict:?}, {}, without {unasked:?}",
-                row.reason
+                row.reason()
             ));
         }
     }

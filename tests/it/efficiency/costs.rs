@@ -2,6 +2,7 @@
 
 use crate::common::{differs, none, options, predicted, row, rows, source};
 use trueflight::case::Case;
+use trueflight::estimators::Knowledge;
 use trueflight::plan::Plan;
 use trueflight::record::Row;
 use trueflight::record::build;
@@ -129,7 +130,8 @@ fn what_no_lookup_pays_for_has_a_name() {
                       { double = { control.mean = {}, sampling.local-majorants.segments = 8 } }, \
                       { ratio = {} }, { residual-ratio.control.constant.value = 0.1 }";
     let rows = predicted(&eq21("", "sampling.constant.value = 0.7", estimators));
-    let needs: Vec<&str> = rows.iter().map(|row| row.experiment.needs.as_str()).collect();
+    let needs: Vec<String> =
+        rows.iter().map(|row| Knowledge::list(&row.experiment.needs)).collect();
     let both = "τ, max |σ_t − σ_c|";
     assert_eq!(needs, ["τ", "τ", "τ", "min σ_t", "max |σ_t − σ_c|", both, "", ""]);
     // A swept control or σ̂ replaces the recipe.
@@ -164,7 +166,7 @@ fn exact_transmittances_need_tau() {
              ray = {{ origin = [0, 0, 0], direction = [1, 0, 0], length = 2 }}\n\
              light.position = [1, 1, 0]\nalbedo = 0.9\nphase.isotropic = {{}}\nsampling.constant.value = 1.2\nestimators = [{{ {estimator} }}]"
         );
-        predicted(&text)[0].experiment.needs.clone()
+        Knowledge::list(&predicted(&text)[0].experiment.needs)
     };
     assert_eq!(lit("delta-tracking = {}"), "τ");
     assert_eq!(lit("delta-tracking.shadow.ratio.sampling = 1.2"), "");
@@ -174,7 +176,7 @@ fn exact_transmittances_need_tau() {
                    span = [0, 4]\nsampling.constant.value = 1\n\
                    estimators = [{ inversion = {} }, { woodcock = {} }]";
     let needs: Vec<String> =
-        predicted(flights).into_iter().map(|row| row.experiment.needs.clone()).collect();
+        predicted(flights).into_iter().map(|row| Knowledge::list(&row.experiment.needs)).collect();
     assert_eq!(needs, ["inverse of τ", ""]);
 }
 

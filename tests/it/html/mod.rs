@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use trueflight::case::Case;
 use trueflight::case::suite;
+use trueflight::gate::session::Reason;
 use trueflight::plan::{Plan, PlannedCase};
 use trueflight::record::baseline::Measured;
 use trueflight::record::{CaseRecord, Record, Row, Verdict, build};
@@ -74,7 +75,7 @@ fn assert_whole(html: &str, record: &Record) {
     for (body, row) in experiments.iter().zip(rows) {
         let experiment = row.experiment;
         let words =
-            [&row.case.name, &experiment.label, &row.channel, &row.reason, &experiment.command];
+            [&row.case.name, &experiment.label, &row.channel, &row.reason(), &experiment.command];
         for word in words {
             assert!(body.text.contains(word.as_str()), "{word} is not in {}", body.text);
         }
@@ -205,11 +206,10 @@ fn words_of_a_case_are_text_whatever_is_in_them() {
             }
             for (number, channel) in one.channels.iter_mut().enumerate() {
                 channel.channel = format!("{HOSTILE}{number}");
-                channel.reason = HOSTILE.to_owned();
             }
             for finding in &mut one.findings {
-                finding.channel = HOSTILE.to_owned();
-                finding.reason = HOSTILE.to_owned();
+                finding.channel = format!("{HOSTILE}0");
+                finding.reason = Some(Reason::Dependent(HOSTILE.to_owned()));
             }
         }
         case.name_experiments();

@@ -10,7 +10,9 @@ pub mod walk;
 
 use self::walk::WalkEvents;
 use crate::setup::heuristic;
-use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, estimators, walks};
+use crate::{
+    Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, estimators, walks,
+};
 use ::theory::Prediction;
 use ::theory::light::Heuristic;
 use ::theory::problems::BidirectionalRod;
@@ -100,7 +102,11 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         let connection = if is_tracked { "ratio" } else { "exact" };
         let subpaths = if is_shared { ", shared subpaths" } else { "" };
         let settings = format!("{first}{connection} connection{subpaths}");
-        Traits { settings, needs: (!is_tracked).then_some("τ"), ..Traits::of(Self::INPUTS) }
+        Traits {
+            settings,
+            needs: (!is_tracked).then_some(Knowledge::OpticalDepth),
+            ..Traits::of(Self::INPUTS)
+        }
     }
 
     fn domain(&self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {

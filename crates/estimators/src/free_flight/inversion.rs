@@ -15,7 +15,7 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, Eq. 4.
 
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
+use crate::{Draw, Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, walks};
 use numeric::rng::exponential;
 use theory::problems::{FreeFlight, Problem};
 use theory::ray::free_flight;
@@ -30,7 +30,7 @@ impl Estimator<FreeFlight> for Inversion {
     const PLAIN: Option<Self> = Some(Self);
 
     fn traits(&self) -> Traits {
-        Traits { needs: Some("inverse of τ"), ..Traits::of(Self::INPUTS) }
+        Traits { needs: Some(Knowledge::InverseDepth), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {

@@ -8,7 +8,7 @@ pub mod unidirectional;
 pub mod walk;
 
 use crate::recipes::inequality;
-use crate::{Estimated, Inputs, Kernel, Refusal, Request, Setup, Traits, estimators};
+use crate::{Estimated, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, estimators};
 use media::catalogue::Settings;
 use theory::light::{Combination, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
@@ -78,7 +78,7 @@ fn traits(techniques: Techniques) -> Traits {
     };
     let is_power = matches!(techniques.combination, Combination::Mis(_, Heuristic::Power));
     let heuristic = if is_power { ", power heuristic" } else { "" };
-    let needs = (techniques.shadow == Some(Shadow::Exact)).then_some("τ");
+    let needs = (techniques.shadow == Some(Shadow::Exact)).then_some(Knowledge::OpticalDepth);
     let settings = format!("{shadow}{heuristic}");
     Traits { settings, needs, ..Traits::of(Inputs::SAMPLING) }
 }

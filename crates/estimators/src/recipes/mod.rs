@@ -3,6 +3,8 @@
 pub mod controls;
 pub mod sampling;
 
+use std::borrow::Cow;
+
 use media::Body;
 use media::catalogue::Settings;
 use numeric::digits::rounded;
@@ -23,13 +25,15 @@ pub struct Site<'a> {
 
 /// Reason why an estimator is not run.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Refusal {
     /// An inequality that the estimator needs does not hold.
     #[error("needs {needs}, but {found} at t = {}", rounded(*at))]
     Inequality {
         /// Inequality that must hold everywhere, in words.
-        needs: &'static str,
+        needs: Cow<'static, str>,
         /// Values that violate it, in words.
         found: String,
         /// Distance along the ray at which they were found.
@@ -39,7 +43,7 @@ pub enum Refusal {
     #[error("needs {needs}, but {found}")]
     Mismatch {
         /// Input that the estimator takes, in words.
-        needs: &'static str,
+        needs: Cow<'static, str>,
         /// Input that it was given, in words.
         found: String,
     },
@@ -48,7 +52,7 @@ pub enum Refusal {
 impl Refusal {
     /// A mismatch in words.
     pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
-        Self::Mismatch { needs, found: found.into() }
+        Self::Mismatch { needs: needs.into(), found: found.into() }
     }
 }
 

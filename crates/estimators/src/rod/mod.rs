@@ -56,7 +56,7 @@ impl ByRule for Rod {
         match rod::has_variance(mesh, &setup.problem, &setup.fields.sampling, rule) {
             Ok(()) => Ok(()),
             Err(NoVariance::Diverges(at)) => Err(Refusal::Inequality {
-                needs,
+                needs: needs.into(),
                 found: "σ̂ is so far below σ_t that E[X²] diverges: the critical length ends"
                     .to_owned(),
                 at,

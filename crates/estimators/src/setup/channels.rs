@@ -97,7 +97,7 @@ pub fn require_majorants(channels: &[ChannelFields]) -> Result<(), Refusal> {
         if let Some((at, sigma)) = worst.filter(|&(_, s)| s > channel.majorant * (1.0 + 1e-12)) {
             let [majorant, sigma] = [channel.majorant, sigma].map(rounded);
             return Err(Refusal::Inequality {
-                needs: "σ̂ ≥ σ_t in each channel",
+                needs: "σ̂ ≥ σ_t in each channel".into(),
                 found: format!("σ̂ = {majorant} and σ_t = {sigma} in channel {number}"),
                 at,
             });
@@ -173,12 +173,13 @@ impl Room<'_> {
         if let Some(panel) = missing {
             let found =
                 format!("{stretch} in channel {number} on a stretch, which biases the others,");
+            let needs = (*needs).into();
             return Err(Refusal::Inequality { needs, found, at: panel.span.from });
         }
         let touches = cut.peaks(&|t| -beside(t)).into_iter().find(|&(_, found)| -found <= TOUCHES);
         if let Some((at, _)) = touches {
             let found = format!("{touch} in channel {number}: E[X²] is infinite");
-            return Err(Refusal::Inequality { needs: "a finite variance", found, at });
+            return Err(Refusal::Inequality { needs: "a finite variance".into(), found, at });
         }
         Ok(())
     }

@@ -72,7 +72,7 @@ impl Residual<'_> {
         match blind {
             None => Ok(()),
             Some((at, size)) => Err(Refusal::Inequality {
-                needs: "σ̂ > 0 wherever the residual is not zero",
+                needs: "σ̂ > 0 wherever the residual is not zero".into(),
                 found: format!("σ̂ = 0 while |{}| = {}", self.name(), rounded(size)),
                 at,
             }),
@@ -111,7 +111,7 @@ impl Residual<'_> {
         let scale = cut.largest(&|_, sigma| sigma).map_or(0.0, |(_, largest)| largest);
         match worst {
             Some((at, deficit)) if deficit > SLACK * scale => Err(Refusal::Inequality {
-                needs,
+                needs: needs.into(),
                 found: format!("{} = {}", self.name(), rounded(-deficit)),
                 at,
             }),
@@ -156,7 +156,7 @@ impl Residual<'_> {
                 let ratio = excess * limit(at);
                 let [flown, residual, shown] = [sampling, ratio * sampling, ratio].map(rounded);
                 let found = format!("σ̂ = {flown} and {name} = {residual}, r = {shown},");
-                Err(Refusal::Inequality { needs, found, at })
+                Err(Refusal::Inequality { needs: needs.into(), found, at })
             }
             _ => Ok(()),
         }

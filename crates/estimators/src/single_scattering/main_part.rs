@@ -130,7 +130,7 @@ pub fn require(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
     let as_sampling = Residual { sampling, control: &Control::None, ..setup.residual() };
     as_sampling.require_coverage().map_err(|refusal| match refusal {
         Refusal::Inequality { at, .. } => Refusal::Inequality {
-            needs: "a control σ_m > 0 wherever σ_t > 0",
+            needs: "a control σ_m > 0 wherever σ_t > 0".into(),
             found: "σ_m = 0 while σ_t is not".into(),
             at,
         },

@@ -15,7 +15,7 @@ use crate::setup::Residual;
 use crate::space::connection;
 use crate::space::shadow::ShadowRays;
 use crate::walks::{self, Walk};
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
+use crate::{Draw, Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits};
 use media::catalogue::Settings;
 use media::{Control, Lookups};
 use numeric::geometry::Bounds;
@@ -167,10 +167,10 @@ impl Plan {
         technique + &connection::shadow_label(self.shadow)
     }
 
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         let is_exact = matches!(&self.technique, Technique::Vertices(vertices)
             if vertices.is_chosen() && vertices.camera == CameraTracking::Exact);
-        is_exact.then_some("τ").or(connection::shadow_needs(self.shadow))
+        is_exact.then_some(Knowledge::OpticalDepth).or(connection::shadow_needs(self.shadow))
     }
 
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {

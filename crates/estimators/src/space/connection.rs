@@ -13,6 +13,7 @@
 //! on the way to the point. One is cast where a tracked weight has become 0, because the probability of that
 //! depends on the rounding of σ̂ and σ_t.
 
+use crate::Knowledge;
 use media::Volume;
 use media::catalogue::{Domain, Settings};
 use numeric::geometry::Ray;
@@ -54,8 +55,8 @@ pub fn shadow_label(shadow: Tracking) -> String {
 }
 
 /// Known quantities that exact shadow rays need.
-pub fn shadow_needs(shadow: Tracking) -> Option<&'static str> {
-    (shadow == Tracking::Exact).then_some("τ")
+pub fn shadow_needs(shadow: Tracking) -> Option<Knowledge> {
+    (shadow == Tracking::Exact).then_some(Knowledge::OpticalDepth)
 }
 
 /// The transmittance of an interval of a ray within the bounds of a volume, in closed form.

@@ -12,7 +12,7 @@ use crate::setup::ControlledLine;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
 use crate::single_scattering::plan::{Absorption, at_collisions};
-use crate::{Refusal, Setup, estimators};
+use crate::{Knowledge, Refusal, Setup, estimators};
 use ::theory::Prediction;
 use ::theory::colours::Chances;
 use ::theory::colours::rates::Proposal;
@@ -39,8 +39,8 @@ impl Shadow {
         Some(if word == "ratio" { Self::Ratio } else { Self::Exact })
     }
 
-    fn needs(self) -> Option<&'static str> {
-        (self == Self::Exact).then_some("τ")
+    fn needs(self) -> Option<Knowledge> {
+        (self == Self::Exact).then_some(Knowledge::OpticalDepth)
     }
 
     fn label(self, further: &str) -> String {

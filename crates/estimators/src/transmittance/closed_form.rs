@@ -12,7 +12,7 @@
 //! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
 //! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
 
-use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
+use crate::{Draw, Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, walks};
 use numeric::Lane;
 use theory::Prediction;
 use theory::problems::Transmittance;
@@ -27,7 +27,7 @@ impl Estimator<Transmittance> for ClosedForm {
     const PLAIN: Option<Self> = Some(Self);
 
     fn traits(&self) -> Traits {
-        Traits { needs: Some("τ"), ..Traits::of(Self::INPUTS) }
+        Traits { needs: Some(Knowledge::OpticalDepth), ..Traits::of(Self::INPUTS) }
     }
 
     fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {

@@ -36,7 +36,7 @@ impl Estimator<Transmittance> for Regular {
         match varying {
             None => Ok(()),
             Some(panel) => Err(Refusal::Inequality {
-                needs: "a medium that is constant between its breaks",
+                needs: "a medium that is constant between its breaks".into(),
                 found: "σ_t varies".into(),
                 at: panel.span.middle(),
             }),

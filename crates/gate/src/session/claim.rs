@@ -9,6 +9,7 @@ use super::quantity::{
     MEAN_CAP, Quantity, USUAL, VARIANCE_CAP, VarianceBound, mean_floor, variance_floor,
     variance_of_squares,
 };
+use crate::deviation::DrawUnit;
 use crate::stats::gate::Design;
 use crate::stats::verdict::{BLOCK, FURTHEST};
 use numeric::digits::number;
@@ -369,7 +370,7 @@ impl CheckedClaim {
     /// Quantities that can be judged with this claim.
     pub(super) fn quantities(&self) -> Vec<Quantity> {
         let Self { claim, wanted, .. } = self;
-        let unit = if wanted.batch > 1 { "averages" } else { "draws" };
+        let unit = if wanted.batch > 1 { DrawUnit::Averages } else { DrawUnit::Draws };
         let is_bounded = claim.range.is_some_and(|[low, high]| (high - low).is_finite());
         let mut quantities = Vec::new();
         if !self.is_certain() {

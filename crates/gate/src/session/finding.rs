@@ -45,7 +45,7 @@ impl Scalar {
 
     /// Reason where the draws do not show their own variance.
     fn unknown_spread(&self) -> Reason {
-        let Quantity { what, ground, tolerance, .. } = self.quantity.clone();
+        let Quantity { check, what, ground, tolerance, .. } = self.quantity.clone();
         let (draws, carry) = (self.past.draws(), self.past.effective_draws().floor().max(0.0));
         let missing = match (ground, self.assumed()) {
             (None, _) => Missing::FirstDraws,
@@ -58,7 +58,7 @@ impl Scalar {
             }
             _ => Missing::Carriers(carry),
         };
-        Reason::UnknownSpread { what, draws, tolerance, missing }
+        Reason::UnknownSpread { check, what, draws, tolerance, missing }
     }
 
     /// Deviation over all draws, in z standard errors.
@@ -79,6 +79,7 @@ impl Scalar {
     /// An obvious deviation of z standard errors that does not fail.
     fn looks_off(&self, z: f64, excluded: Option<f64>) -> Reason {
         Reason::LooksOff {
+            check: self.quantity.check,
             what: self.quantity.what.clone(),
             off: self.deviation_of_all(z),
             are_alike: z.is_infinite(),

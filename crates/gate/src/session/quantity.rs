@@ -10,6 +10,7 @@
 //! their name and their largest tolerance.
 
 use crate::CheckId;
+use crate::deviation::DrawUnit;
 use std::borrow::Cow;
 
 use super::reason::Reason;
@@ -27,11 +28,13 @@ pub const USUAL: f64 = 0.01;
 
 /// Known bound on the variance of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum VarianceBound {
     /// The variance, or an upper bound.
-    Variance(f64),
+    Variance(#[cfg_attr(feature = "serde", serde(with = "crate::extended"))] f64),
     /// An upper bound of the kurtosis.
-    Kurtosis(f64),
+    Kurtosis(#[cfg_attr(feature = "serde", serde(with = "crate::extended"))] f64),
     /// The variance that the draws show. It is no ground to fail.
     Shown,
 }
@@ -62,7 +65,7 @@ pub struct Quantity {
     /// Size of y = 1 in units of the quantity.
     pub scale: f64,
     /// What is counted, in the plural.
-    pub unit: &'static str,
+    pub unit: DrawUnit,
 }
 
 impl Quantity {
@@ -86,7 +89,7 @@ impl Quantity {
             must_pass: false,
             expected: 0.0,
             scale: 1.0,
-            unit: "draws",
+            unit: DrawUnit::Draws,
         }
     }
 

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::ground::EFFECTIVE;
 use super::quantity::VarianceBound;
+use crate::CheckId;
 use crate::deviation::{Deviation, signed_percent};
 use crate::stats::verdict::BLOCK;
 use numeric::digits::{enough, percent};
@@ -14,6 +15,8 @@ pub type What = Cow<'static, str>;
 
 /// Reason of a verdict about the quantity `what`.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Reason {
     /// The evidence refutes the expected value.
@@ -25,10 +28,13 @@ pub enum Reason {
         /// Words on the unit of the deviation; may be empty.
         remark: String,
         /// ln E.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         ln_e: f64,
         /// ln E at which it fails.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         limit: f64,
         /// Given tolerance, if the deviation is below it.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         tolerance: Option<f64>,
     },
     /// The deviation is obvious, but within the given tolerance.
@@ -38,10 +44,13 @@ pub enum Reason {
         /// The deviation.
         off: Deviation,
         /// ε, as given.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         tolerance: f64,
     },
     /// The deviation is obvious, but the grounds do not allow a failure.
     LooksOff {
+        /// The check.
+        check: CheckId,
         /// The quantity.
         what: What,
         /// The deviation.
@@ -51,6 +60,7 @@ pub enum Reason {
         /// Known bound on the variance; `None` for a range alone.
         ground: Option<VarianceBound>,
         /// Bias that the gate excludes, where it has decided.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         excluded: Option<f64>,
     },
     /// The draws do not decide.
@@ -60,17 +70,22 @@ pub enum Reason {
         /// Number of draws.
         draws: u64,
         /// ε.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         tolerance: f64,
         /// Number of draws that the tolerance needs.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         needed: f64,
     },
     /// The draws do not show the variance that a decision needs.
     UnknownSpread {
+        /// The check.
+        check: CheckId,
         /// The quantity.
         what: What,
         /// Number of draws.
         draws: u64,
         /// Given tolerance, which is then not tested.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         tolerance: Option<f64>,
         /// What is missing.
         missing: Missing,
@@ -80,8 +95,10 @@ pub enum Reason {
         /// The quantity.
         what: What,
         /// Number of draws that a pass needs; infinite where the prediction is not accurate enough for any.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         needed: f64,
         /// Relative error of the prediction.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         floor: f64,
     },
     /// Nothing can be tested with any draws.
@@ -92,16 +109,19 @@ pub enum Reason {
         why: String,
     },
     /// The declared bias is shown: its relative size.
-    BiasShown(f64),
+    BiasShown(#[cfg_attr(feature = "serde", serde(with = "crate::extended"))] f64),
     /// The draws ended before the declared bias was shown: their number.
     BiasNotShown(u64),
     /// A bias was declared, and the evidence for it is too small.
     SmallBias {
         /// Relative size of the bias.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         bias: f64,
         /// ln E.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         ln_e: f64,
         /// ln E at which it is shown.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         limit: f64,
     },
     /// The limit of time or draws came before the first draw.
@@ -126,8 +146,10 @@ pub enum Reason {
         /// Deviation of the mean.
         off: Deviation,
         /// Largest relative deviation of a draw.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         largest: f64,
         /// Relative deviation that rounding explains.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         bound: f64,
     },
     /// A draw deviates by more than rounding explains.
@@ -135,12 +157,14 @@ pub enum Reason {
         /// The quantity.
         what: What,
         /// Largest relative deviation of a draw.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         largest: f64,
         /// Relative deviation that rounding explains.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         bound: f64,
     },
     /// A draw takes another number of lookups than all draws must: the largest difference.
-    LookupsOff(f64),
+    LookupsOff(#[cfg_attr(feature = "serde", serde(with = "crate::extended"))] f64),
     /// The draws ended before the number that a p-value needs.
     Cut {
         /// The distribution.
@@ -170,8 +194,10 @@ pub enum Reason {
     /// The squares about the truth are too large because the mean deviates.
     SquaresByMean {
         /// Relative excess of the mean square about the truth.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         about_truth: f64,
         /// Relative excess of the variance about the mean of the draws.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         about_mean: f64,
     },
     /// The mean changes within the draws.
@@ -183,6 +209,7 @@ pub enum Reason {
         /// Deviation of that part.
         off: Deviation,
         /// Distance from all other draws in standard errors.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         z: f64,
     },
     /// The draws depend on each other, as the words explain.
@@ -195,25 +222,31 @@ pub enum Reason {
 
 /// Evidence that is missing to know a variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Missing {
     /// First draws to choose a tolerance by.
     FirstDraws,
     /// Enough draws to bound the variance by a kurtosis.
     DrawsOfKurtosis {
         /// The kurtosis that was given.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         kurtosis: f64,
         /// Number of draws that it needs.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         needed: f64,
     },
     /// Tails that are as light as assumed.
     LightTails {
         /// Kurtosis that the draws show.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         shown: f64,
         /// Kurtosis that was assumed.
+        #[cfg_attr(feature = "serde", serde(with = "crate::extended"))]
         assumed: f64,
     },
     /// Draws that carry the variance: their number.
-    Carriers(f64),
+    Carriers(#[cfg_attr(feature = "serde", serde(with = "crate::extended"))] f64),
 }
 
 impl fmt::Display for Reason {
@@ -229,17 +262,17 @@ impl fmt::Display for Reason {
                     "{what} is off by {off}, within the tolerance of {tolerance:.1e} that was asked for"
                 )
             }
-            Self::LooksOff { what, off, are_alike, ground, excluded } => {
+            Self::LooksOff { check, what, off, are_alike, ground, excluded } => {
                 let alike = if *are_alike { ", and all draws are alike" } else { "" };
-                let (why, excluded) = (not_shown(what, off, *ground), excluded_bias(*excluded));
+                let (why, excluded) = (not_shown(*check, off, *ground), excluded_bias(*excluded));
                 write!(f, "{what} looks off by {off}{alike}, but {why}{excluded}")
             }
             Self::Undecided { what, draws, tolerance, needed } => write!(
                 f,
                 "{what} is undecided after {draws} draws; a tolerance of {tolerance:.2e} needs {needed:.1e}"
             ),
-            Self::UnknownSpread { what, draws, tolerance, missing } => {
-                missing.write(f, what, *draws)?;
+            Self::UnknownSpread { check, what, draws, tolerance, missing } => {
+                missing.write(f, (*check, what), *draws)?;
                 tolerance.map_or(Ok(()), |asked| {
                     write!(f, "; the tolerance of {asked:.1e} is not tested without that")
                 })
@@ -314,7 +347,12 @@ impl fmt::Display for Reason {
 }
 
 impl Missing {
-    fn write(&self, f: &mut fmt::Formatter, what: &str, draws: u64) -> fmt::Result {
+    fn write(
+        &self,
+        f: &mut fmt::Formatter,
+        (check, what): (CheckId, &str),
+        draws: u64,
+    ) -> fmt::Result {
         match self {
             Self::FirstDraws => {
                 write!(
@@ -331,22 +369,22 @@ impl Missing {
                 f,
                 "the spread of {what} is not known: the draws show a kurtosis of {shown:.0}, more than the {assumed:.0} \
                  that was assumed; give {}",
-                cure(what)
+                cure(check)
             ),
             Self::Carriers(carry) => write!(
                 f,
                 "the spread of {what} is not known: {carry} of {draws} draws carry it, and {EFFECTIVE} of more than \
                  {BLOCK} are needed; give {}",
-                cure(what)
+                cure(check)
             ),
         }
     }
 }
 
 /// Grounds that would let a quantity fail.
-fn cure(what: &str) -> &'static str {
-    match what {
-        "the variance" => "the kurtosis or the range",
+fn cure(check: CheckId) -> &'static str {
+    match check {
+        CheckId::Variance => "the kurtosis or the range",
         _ => "the variance, the range or the largest kurtosis",
     }
 }
@@ -361,12 +399,14 @@ fn excluded_bias(excluded: Option<f64>) -> String {
     excluded.map_or(String::new(), |bias| format!("; a bias of {bias:.2e} is excluded: {cure}"))
 }
 
-fn not_shown(what: &str, off: &Deviation, ground: Option<VarianceBound>) -> String {
-    let draws = format!("{} {}", off.draws, off.unit);
+fn not_shown(check: CheckId, off: &Deviation, ground: Option<VarianceBound>) -> String {
+    let draws = format!("{} {}", off.draws, off.unit.word());
     match ground {
         Some(VarianceBound::Variance(_)) => format!("{draws} of the variance given do not show it"),
         Some(VarianceBound::Kurtosis(_)) => format!("{draws} of the kurtosis given do not show it"),
-        Some(VarianceBound::Shown) => format!("no number of draws shows it without {}", cure(what)),
+        Some(VarianceBound::Shown) => {
+            format!("no number of draws shows it without {}", cure(check))
+        }
         None => format!("{draws} of the range given do not show it: give more, or the variance"),
     }
 }

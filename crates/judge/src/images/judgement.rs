@@ -185,13 +185,36 @@ fn by_names<S: Serializer>(first: &Option<[usize; 3]>, to: S) -> Result<S::Ok, S
     to.collect_map(names.map(|(name, axis)| (name, first.map(|place| place[axis]))))
 }
 
+/// Test of equal distributions of two stacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ComparisonMethod {
+    /// Permutations of passes.
+    Permutation,
+    /// Signs of differences.
+    Signs,
+    /// No test.
+    None,
+}
+
+impl ComparisonMethod {
+    /// Returns the word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Permutation => "permutation",
+            Self::Signs => "signs",
+            Self::None => "none",
+        }
+    }
+}
+
 /// Two stacks against each other.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
     /// Number of passes of the reference.
     pub passes: usize,
-    /// Test of equal distributions: `permutation` of passes, `signs` of differences, or `none`.
-    pub method: &'static str,
+    /// Test of equal distributions.
+    pub method: ComparisonMethod,
     /// Number of random permutations; 0 for signs.
     pub permutations: u64,
     /// Smallest p-value of all tiles and the whole together, for equal distributions.

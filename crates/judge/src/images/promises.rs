@@ -1,7 +1,7 @@
 //! Promises of verdicts on one stack and on two, and their assumptions.
 
 use super::claim::Claim;
-use super::judgement::{Comparison, Judgement};
+use super::judgement::{Comparison, ComparisonMethod, Judgement};
 use super::verdict::{self, has_variance};
 use numeric::digits::short;
 
@@ -96,7 +96,11 @@ pub(super) fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
 /// Returns the promises of a verdict on two stacks.
 pub(super) fn guarantees_against(judgement: &Judgement, comparison: &Comparison) -> Vec<String> {
     let alpha = judgement.alpha;
-    let pixels = if comparison.method == "signs" { ", and pixels are independent," } else { "" };
+    let pixels = if comparison.method == ComparisonMethod::Signs {
+        ", and pixels are independent,"
+    } else {
+        ""
+    };
     let mut said = vec![format!(
         "if both stacks have one distribution in every pixel{pixels} they fail with probability {alpha} at most: exact, for any distribution and \
          number of passes"

@@ -1,11 +1,11 @@
 //! Verdicts on one stack and on two, with their reasons; the order of the reasons is that of a session.
 
 use super::claim::{Claim, Pixels};
-use super::judgement::{Comparison, Judgement, Refuted, Tile};
+use super::judgement::{Comparison, ComparisonMethod, Judgement, Refuted, Tile};
 use super::picture::Stack;
 use super::promises::{guarantees, guarantees_against};
 use crate::{Reasons, SIDE_SHARE};
-use gate::deviation::{Deviation, signed_percent};
+use gate::deviation::{Deviation, DrawUnit, signed_percent};
 use gate::stats::verdict::Verdict;
 use numeric::digits::{enough, percent, short};
 
@@ -318,7 +318,7 @@ fn in_channel(judgement: &Judgement, tile: &Tile) -> String {
 fn deviation(judgement: &Judgement, tile: &Tile) -> Deviation {
     let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
         .with_z(tile.z.unwrap_or(f64::NAN));
-    Deviation { unit: "passes", ..told }
+    Deviation { unit: DrawUnit::Passes, ..told }
 }
 
 /// Returns an obvious deviation in words.
@@ -419,7 +419,7 @@ fn open_against(judgement: &Judgement, comparison: &Comparison, differing: usize
              --same-distribution that both renderers have one distribution in each pixel"
         ));
     }
-    if comparison.method == "none" {
+    if comparison.method == ComparisonMethod::None {
         open.push(
             "the passes are too few to be exchanged, and pixels depend on each other; render 8 passes or more of each stack"
                 .to_owned(),

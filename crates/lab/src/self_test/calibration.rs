@@ -250,7 +250,7 @@ fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Checked>) {
     plan.reseed(seed);
     let draws = run::draw(plan, &|_| {});
     let drawn = draws.experiments.iter().map(|one| one.drawn.draws).sum();
-    let findings = evaluate::run(plan, &draws).into_iter().flat_map(|judged| judged.findings());
+    let findings = evaluate::run(plan, &draws).into_iter().flat_map(|judged| judged.findings);
     let checked = findings.map(|finding| {
         let is_powered = finding.gate.is_some_and(|gate| gate.needed.is_none());
         let (is_scalar, p, check) = (finding.gate.is_some(), finding.p, finding.check);

@@ -160,7 +160,7 @@ impl<'a> Stand<'a> {
         plan.options.until_failed = until_failed;
         let draws = run::draw(plan, &|_| {});
         let judged = evaluate::run(plan, &draws).into_iter();
-        let findings = judged.flat_map(|one| one.findings()).collect();
+        let findings = judged.flat_map(|one| one.findings).collect();
         let planned = self.parts()?.1;
         Some(Judged { estimator: planned.id.estimator.to_string(), fixed: planned.fixed, findings })
     }

@@ -31,6 +31,33 @@ pub enum Value {
 }
 
 impl Value {
+    /// A table with one key.
+    pub fn keyed(key: &str, value: Self) -> Self {
+        Self::Table(vec![Entry::new(key, value)])
+    }
+
+    /// A list of numbers.
+    pub fn numbers(list: impl IntoIterator<Item = f64>) -> Self {
+        Self::Array(list.into_iter().map(|x| Self::Number(x).into()).collect())
+    }
+
+    /// The value without places.
+    #[must_use]
+    pub fn unplaced(&self) -> Self {
+        match self {
+            Self::Table(entries) => {
+                let entries = entries.iter();
+                Self::Table(
+                    entries.map(|one| Entry::new(&*one.key, one.node.value.unplaced())).collect(),
+                )
+            }
+            Self::Array(items) => {
+                Self::Array(items.iter().map(|item| item.value.unplaced().into()).collect())
+            }
+            other => other.clone(),
+        }
+    }
+
     pub(super) fn kind(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",
@@ -72,6 +99,20 @@ pub struct Entry {
     pub key_span: Range<usize>,
     /// Value of the key.
     pub node: Node,
+}
+
+/// A value that no file has: it has no place.
+impl From<Value> for Node {
+    fn from(value: Value) -> Self {
+        Self { value, span: 0..0 }
+    }
+}
+
+impl Entry {
+    /// A `key = value` that no file has.
+    pub fn new(key: impl Into<String>, value: Value) -> Self {
+        Self { key: key.into(), key_span: 0..0, node: value.into() }
+    }
 }
 
 /// A mistake: its place, the error and the correction.

@@ -34,6 +34,8 @@ const DIGITS: f64 = 4.0;
 
 /// Kind of a place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Kind {
     /// Nothing is free.
     #[default]

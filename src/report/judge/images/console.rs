@@ -1,7 +1,7 @@
 //! Judgement of a stack of images on the screen: a small block of lines.
 
 use crate::judge::images::Judgement;
-use crate::judge::images::judgement::{Comparison, Dependence, Tile, Variance};
+use crate::judge::images::judgement::{Comparison, ComparisonMethod, Dependence, Tile, Variance};
 use crate::record::Verdict;
 use numeric::digits::{fixed, percent, short, signed};
 
@@ -47,9 +47,11 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
 /// Returns the comparison of two stacks and its method.
 fn against_line(found: &Comparison) -> String {
     let method = match found.method {
-        "permutation" => format!("{} permutations of passes", found.permutations),
-        "signs" => "signs of differences".to_owned(),
-        _ => "no test: too few passes of pixels that depend on each other".to_owned(),
+        ComparisonMethod::Permutation => format!("{} permutations of passes", found.permutations),
+        ComparisonMethod::Signs => "signs of differences".to_owned(),
+        ComparisonMethod::None => {
+            "no test: too few passes of pixels that depend on each other".to_owned()
+        }
     };
     let spread = found.spread.map_or(String::new(), |ratio| {
         let p = if found.permutations > 0 {

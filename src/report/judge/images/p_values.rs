@@ -6,7 +6,7 @@
 
 use super::maps::{Dots, GAP, HEAD, Maps, smallest};
 use crate::judge::images::Judgement;
-use crate::judge::images::judgement::Tile;
+use crate::judge::images::judgement::{ComparisonMethod, Tile};
 use crate::report::plots::style::{COLOURS, GREY, ink};
 use crate::report::plots::{Axis, Panel};
 use drawing::font::{Typeface, fit};
@@ -31,7 +31,7 @@ pub fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let all = maps.end() + WIDTH + GAP;
     let mut sheet = Sheet::new(all, HEAD + maps.size[1].max(HEIGHT + 84.0) + 24.0);
     let source = match judgement.comparison.as_ref().map(|found| found.method) {
-        Some("permutation") => {
+        Some(ComparisonMethod::Permutation) => {
             "by permutations of the passes: uniform if both stacks have one distribution"
         }
         Some(_) => "bounds by signs of differences: rather too large",

@@ -98,7 +98,9 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::judge::images::judgement::{Comparison, Estimate, Refuted, Variance};
+    use crate::judge::images::judgement::{
+        Comparison, ComparisonMethod, Estimate, Refuted, Variance,
+    };
     use crate::judge::images::{Claim, Level, Options, Size, Stack, judge};
 
     /// Names of the fields of an object, in their order.
@@ -139,7 +141,7 @@ mod tests {
             }),
             comparison: Some(Comparison {
                 passes: 2,
-                method: "none",
+                method: ComparisonMethod::None,
                 permutations: 0,
                 p: 1.0,
                 is_same_distribution: false,

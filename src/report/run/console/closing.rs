@@ -8,7 +8,9 @@ use crate::report::layout::{Paint, Pen, wrapped};
 use crate::report::lists::{joined, left_out};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, failing};
+use crate::report::run::fields;
 use crate::report::run::totals;
+use estimators::Knowledge;
 use numeric::digits::{counted, short};
 use std::fmt::Write;
 
@@ -87,9 +89,7 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
 
 /// Adds the rows that the planned draws leave inconclusive, case by case, with the command that decides them.
 fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
-    let rows = |case: &CaseRecord, verdict| {
-        case.rows().filter(|row| row.foreseen == Some(verdict)).count()
-    };
+    let rows = |case: &CaseRecord, verdict| case.rows().filter(|row| row.foresees(verdict)).count();
     let open = cases.iter().filter(|case| rows(case, Verdict::Inconclusive) > 0);
     for case in open {
         let word = Verdict::Inconclusive.word();
@@ -163,7 +163,7 @@ pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) 
             say(row, "", format!("{setup} setup lookups"));
         }
         if !row.experiment.needs.is_empty() && !is_shown(NEEDS) {
-            say(row, "", format!("needs {}", row.experiment.needs));
+            say(row, "", format!("needs {}", Knowledge::list(&row.experiment.needs)));
         }
     }
     for note in notes {
@@ -173,7 +173,8 @@ pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) 
 
 /// Returns words for the best σ̂ of a row; `None` if it was not searched.
 fn best(row: &Row) -> Option<String> {
-    let Best { sampling, fom, kind, limit } = row.best.as_ref()?;
+    let found = row.best.as_ref()?;
+    let (Best { sampling, fom, limit, .. }, kind) = (found, fields::kind(found));
     let fom = fom.map_or("∞".to_owned(), |fom| short(fom, 4));
     let best = format!("best σ\u{302} {}, best FoM {fom}", short(*sampling, 4));
     Some(match *limit {

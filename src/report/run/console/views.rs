@@ -1,5 +1,6 @@
 //! Columns of each view of the table, and their content.
 
+use crate::case::sweep::SweptQuantity;
 use crate::record::{CaseRecord, Digits, Row, Verdict};
 use crate::report::fields::{Shown, Table, grid, shown};
 use crate::report::layout::{Column, Field, Paint};
@@ -49,7 +50,7 @@ pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
         column(("estimator", false, 0), &|row| row.experiment.label.clone()),
         column(("σ\u{302}", true, 1), &sampling),
     ];
-    if let Some(head) = swept_apart(case.sweep.as_ref().map(|sweep| &*sweep.what)) {
+    if let Some(head) = swept_apart(case.sweep.as_ref().map(|sweep| sweep.what)) {
         let swept = |row: &Row| row.experiment.swept().map(|x| labels.text(x)).unwrap_or_default();
         columns.push(column((head, true, 1), &swept));
     }
@@ -87,16 +88,13 @@ pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
 }
 
 /// Returns the heading of the swept quantity if it is not the sampling extinction itself.
-pub fn swept_apart(swept: Option<&str>) -> Option<&'static str> {
+pub fn swept_apart(swept: Option<SweptQuantity>) -> Option<&'static str> {
     match swept? {
-        "sampling" => None,
-        "sampling-scale" => Some("σ\u{302} scale"),
-        "albedo" => Some("albedo"),
-        "points" => Some("points"),
-        "density" => Some("density"),
-        "albedo-scale" => Some("albedo scale"),
-        "contrast" => Some("contrast"),
-        _ => Some("swept"),
+        SweptQuantity::Sampling => None,
+        SweptQuantity::SamplingScale => Some("σ\u{302} scale"),
+        SweptQuantity::AlbedoScale => Some("albedo scale"),
+        SweptQuantity::Control => Some("swept"),
+        other => Some(other.key()),
     }
 }
 
@@ -120,7 +118,7 @@ pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Digits) -> String {
     }
     let mut parts = Vec::new();
     if !swept.is_empty() {
-        let what = case.sweep.as_ref().map(|sweep| &*sweep.what);
+        let what = case.sweep.as_ref().map(|sweep| sweep.what);
         let name = swept_apart(what).unwrap_or("σ\u{302}");
         parts.push(format!("{name} {}", swept.join(", ")));
     }
@@ -135,18 +133,14 @@ pub fn is_skipped(row: &Row, view: View) -> bool {
     view == View::Plan
         && row.verdict.is_none()
         && row.experiment.draws.is_none()
-        && !row.reason.is_empty()
+        && !row.reason().is_empty()
 }
 
 /// Returns the word for the result of a row.
 pub fn status(row: &Row, view: View) -> Field {
-    let status_of = |verdict: Option<Verdict>| {
-        let paint = verdict.map_or(Paint::Plain, paint);
-        Field { text: verdict.map_or("", Verdict::word).to_owned(), paint }
-    };
-    match row.verdict {
-        Some(_) => status_of(row.verdict),
-        None if row.foreseen.is_some() => status_of(row.foreseen),
+    let foreseen = || row.foreseen.as_ref().map(|foreseen| foreseen.verdict);
+    match row.verdict.or_else(foreseen) {
+        Some(verdict) => Field { text: verdict.word().to_owned(), paint: paint(verdict) },
         None if is_skipped(row, view) => Field { text: "skipped".to_owned(), paint: Paint::Dim },
         None => Field::plain(String::new()),
     }

@@ -41,7 +41,7 @@ const FACTS: &[Column] = shown!(Joined:
 pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
     let findings: Vec<&Finding> = row.findings().collect();
     html! {
-        @if !row.reason.is_empty() { p.reason { (row.reason) } }
+        @if !row.reason().is_empty() { p.reason { (row.reason()) } }
         (page::causes(&failures::causes(row)))
         @if row.verdict != Some(Verdict::Refused) { (numbers(row)) }
         div.both {
@@ -108,7 +108,7 @@ fn numbers(row: &Row) -> Markup {
         at.map(|at| open.remove(at)).is_none()
     });
     let (told, plain): (Vec<_>, Vec<_>) = rest.partition(|finding| {
-        finding.gate.is_some() || !finding.reason.is_empty() || finding.verdict != Verdict::Pass
+        finding.gate.is_some() || finding.reason.is_some() || finding.verdict != Verdict::Pass
     });
     html! {
         div.wide tabindex="0" role="group" aria-label="numbers" {
@@ -187,8 +187,8 @@ fn says(finding: &Finding) -> Markup {
                  @if finding.expects_bias { " of " (words::number(Some(gate.ln_e_limit), 3)) } }
             td { (number(gate.ln_p[0])) ", " (number(gate.ln_p[1])) }
             td { (words::count(Some(gate.draws))) }
-        } @else if !finding.reason.is_empty() { td {} td {} td {} }
-        @if !finding.reason.is_empty() { td.words { (finding.reason) } }
+        } @else if finding.reason.is_some() { td {} td {} td {} }
+        @if finding.reason.is_some() { td.words { (finding.words()) } }
     }
 }
 

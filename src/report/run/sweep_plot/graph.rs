@@ -9,6 +9,7 @@ use crate::report::plots::legend::{self, Key};
 use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side, smallest_step};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{DARK, Marker, PAPER};
+use crate::report::run::fields;
 use crate::report::run::sweep_plot::names::{self, Course};
 use drawing::Sheet;
 use drawing::font::Typeface;
@@ -256,11 +257,11 @@ pub fn note_on_optima(series: &[Series]) -> Option<String> {
         match best.limit {
             Some(limit) => {
                 let limit = short(limit, 4);
-                let kind = &best.kind;
+                let kind = fields::kind(best);
                 Some(format!("{label} rises to {limit}, {kind} at σ\u{302} = {at}{outside}"))
             }
             None if outside.is_empty() && best.is_optimum() => None,
-            None => Some(format!("{label}: {} at σ\u{302} = {at}{outside}", best.kind)),
+            None => Some(format!("{label}: {} at σ\u{302} = {at}{outside}", fields::kind(best))),
         }
     });
     let said = joined(said, "; ");

@@ -48,7 +48,7 @@ fn wrong_renderers_are_found_against_a_reference() {
         let found = compare(&bad, &reference, Terms::default(), &wanted).expect("a judgement");
         assert_eq!(found.verdict, Verdict::Fail, "{law:?} {passes}: {}", found.reason);
         let expected = if passes < 8 { "signs" } else { "permutation" };
-        assert_eq!(found.comparison.expect("one").method, expected);
+        assert_eq!(found.comparison.expect("one").method.word(), expected);
         assert!(found.reason.contains("rows 8 to 15, columns 8 to 15"), "{}", found.reason);
     }
     // A mean of a fourth of the samples has four times the variance: no fault, except with --same-distribution.

@@ -9,6 +9,7 @@
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, *Optimal control variate*.
 
 use super::Recipe;
+use crate::Knowledge;
 use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Piecewise};
@@ -28,8 +29,8 @@ impl Recipe for Mean {
         "mean".into()
     }
 
-    fn needs(&self) -> Option<&'static str> {
-        Some("τ")
+    fn needs(&self) -> Option<Knowledge> {
+        Some(Knowledge::OpticalDepth)
     }
 
     fn prepare(&self, site: &Site) -> Result<Control, Refusal> {

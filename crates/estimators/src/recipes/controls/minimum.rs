@@ -10,6 +10,7 @@
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 4.
 
 use super::Recipe;
+use crate::Knowledge;
 use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Piecewise};
@@ -29,8 +30,8 @@ impl Recipe for Minimum {
         "minimum".into()
     }
 
-    fn needs(&self) -> Option<&'static str> {
-        Some("min σ_t")
+    fn needs(&self) -> Option<Knowledge> {
+        Some(Knowledge::Minimum)
     }
 
     fn prepare(&self, site: &Site) -> Result<Control, Refusal> {

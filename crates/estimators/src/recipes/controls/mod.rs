@@ -8,6 +8,7 @@ pub mod minimum;
 pub mod none;
 
 use super::{FromSettings, RecipeReader, Refusal, Site};
+use crate::Knowledge;
 use media::catalogue::{Registry, Settings};
 use media::{Body, Control, registry};
 
@@ -35,7 +36,7 @@ pub trait Recipe: Send + Sync {
     }
 
     /// Knowledge of the medium that the control needs beside lookups, as in `τ`; `None` for none.
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         None
     }
 

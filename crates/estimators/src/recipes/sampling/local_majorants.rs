@@ -14,6 +14,7 @@
 //! participating media*, ACM Transactions on Graphics 29 (2010).
 
 use super::{Recipe, along_ray_only};
+use crate::Knowledge;
 use crate::recipes::{FromSettings, Refusal, Site};
 use media::catalogue::Settings;
 use media::{Body, Control, Majorants, Piecewise, Volume};
@@ -84,10 +85,10 @@ impl Recipe for LocalMajorants {
         true
     }
 
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         Some(match self {
-            Self::Segments(_) => "max |σ_t − σ_c|",
-            Self::Grid(_) => "bounds of σ_t",
+            Self::Segments(_) => Knowledge::LocalMaxima,
+            Self::Grid(_) => Knowledge::Bounds,
         })
     }
 

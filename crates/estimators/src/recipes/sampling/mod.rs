@@ -8,6 +8,7 @@ pub mod pilot;
 pub mod spectral;
 
 use super::{FromSettings, RecipeReader, Refusal, Site};
+use crate::Knowledge;
 use media::catalogue::{Registry, Settings};
 use media::{Body, Control, Majorants, Piecewise, Volume, registry};
 
@@ -53,7 +54,7 @@ pub trait Recipe: Send + Sync {
     }
 
     /// Knowledge of the medium that σ̂ needs beside lookups, as in `max |σ_t − σ_c|`; `None` for none.
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         None
     }
 

@@ -1,6 +1,7 @@
 //! A σ̂ for each channel of a spectral medium: `sampling = [{ constant.value = 1.6 }, …]`.
 
 use super::Recipe;
+use crate::Knowledge;
 use crate::recipes::{Refusal, Site};
 use media::{Control, Piecewise};
 
@@ -38,7 +39,7 @@ impl Recipe for Spectral {
         self.recipes.iter().any(|recipe| recipe.is_local())
     }
 
-    fn needs(&self) -> Option<&'static str> {
+    fn needs(&self) -> Option<Knowledge> {
         self.recipes.iter().find_map(|recipe| recipe.needs())
     }
 

@@ -24,7 +24,7 @@ pub mod permutation;
 
 use self::evidence::Evidence;
 use self::permutation::{Groups, distinct};
-use super::judgement::{Comparison, Dependence, Judgement, Tile};
+use super::judgement::{Comparison, ComparisonMethod, Dependence, Judgement, Tile};
 use super::{ImageError, NOISY_VALUES, Options, Stack, claim, repeats, tiles, variance, verdict};
 use super::{neighbours_of, order_of, refuted};
 use crate::{ROUNDING, SIDE_SHARE, decide_together, main_share};
@@ -101,7 +101,7 @@ pub fn compare(
     }
     let mut comparison = Comparison {
         passes: reference.passes,
-        method: "none",
+        method: ComparisonMethod::None,
         permutations: 0,
         p: 1.0,
         is_same_distribution: terms.is_same_distribution,
@@ -140,7 +140,7 @@ fn test(
     let (mut all, adjusted) = if distinct(rows[0], rows[1]) >= 2.0 / level {
         let (values, prior) = evidence.rows(&parts);
         let found = Groups::new(values, rows, &prior).compare(level, 1);
-        (comparison.method, comparison.permutations) = ("permutation", found.deals);
+        (comparison.method, comparison.permutations) = (ComparisonMethod::Permutation, found.deals);
         let (values, prior) = evidence.spreads();
         let spread = Groups::new(values, rows, &[prior]).compare(SIDE_SHARE * alpha, 2);
         comparison.spread_p = spread.p[0];
@@ -148,7 +148,7 @@ fn test(
     } else {
         let all = evidence.tiles(&parts, count, None);
         if all.iter().any(|tile| tile.p.is_some()) {
-            comparison.method = "signs";
+            comparison.method = ComparisonMethod::Signs;
         }
         let times = all.len() as f64;
         let of = |tile: &Tile| tile.p.map_or(1.0, |p| (times * p).min(1.0));
