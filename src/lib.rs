@@ -82,7 +82,7 @@ pub use media::{catalogue, files, page, phase};
 pub use numeric::{geometry, rng};
 pub use theory::problems;
 
-/// Compiles and runs the examples of README and manual with those of the documentation.
+/// Compiles and runs the examples of README, manual and the pages of the catalogue with those of the documentation.
 #[cfg(doctest)]
 mod manual {
     #[doc = include_str!("../README.md")]
@@ -91,4 +91,8 @@ mod manual {
     struct Library;
     #[doc = include_str!("../docs/extending.md")]
     struct Extending;
+    #[doc = media::draw_in_rust!()]
+    struct DrawnCase;
+    #[doc = media::draw_in_rust!(picture)]
+    struct RenderedPicture;
 }
