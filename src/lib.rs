@@ -33,6 +33,7 @@
 //! | judge images of a renderer | [`judge::images`] |
 //! | predict mean, variance and cost of an estimator | [`plan::Plan`], then [`record::build`] |
 //! | draw and judge a case | [`case::Case::read`], [`plan::Plan::new`], [`draw::run`], [`record::build::judged`] |
+//! | make the draws of a case, and nothing else | [`case::Case::at`], [`case::ScenarioAtPoint::draws`] |
 //! | write tables, plots and the page of a run | [`report`] |
 //! | look σ_t or an optical depth up | [`media`] |
 //! | add a medium or an estimator, for cases, too | [`Catalogue`], [`media::own`], [`estimators::own`] |
