@@ -33,6 +33,7 @@
 //! | judge images of a renderer | [`judge::images`] |
 //! | predict mean, variance and cost of an estimator | [`plan::Plan`], then [`record::build`] |
 //! | draw and judge a case | [`case::Case::read`], [`plan::Plan::new`], [`draw::run`], [`record::build::judged`] |
+//! | make the draws of a case, and nothing else | [`case::Case::at`], [`case::ScenarioAtPoint::draws`] |
 //! | write tables, plots and the page of a run | [`report`] |
 //! | look σ_t or an optical depth up | [`media`] |
 //! | add a medium or an estimator, for cases, too | [`Catalogue`], [`media::own`], [`estimators::own`] |
@@ -82,7 +83,7 @@ pub use media::{catalogue, files, page, phase};
 pub use numeric::{geometry, rng};
 pub use theory::problems;
 
-/// Compiles and runs the examples of README and manual with those of the documentation.
+/// Compiles and runs the examples of README, manual and the pages of the catalogue with those of the documentation.
 #[cfg(doctest)]
 mod manual {
     #[doc = include_str!("../README.md")]
@@ -91,4 +92,8 @@ mod manual {
     struct Library;
     #[doc = include_str!("../docs/extending.md")]
     struct Extending;
+    #[doc = media::draw_in_rust!()]
+    struct DrawnCase;
+    #[doc = media::draw_in_rust!(picture)]
+    struct RenderedPicture;
 }

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use crate::case::estimator::{Defaults, Estimators};
 use estimators::setup::{FAINTEST, Parts};
 use estimators::trial::{Entry, Joined};
-use estimators::{Estimated, Experiment, Fields, Refusal, Setup};
+use estimators::{DrawBuffer, Estimated, Experiment, Fields, Refusal, Setup};
+use gate::stats::verdict::BLOCK;
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Medium};
+use numeric::rng::Address;
 use theory::Prediction;
 use theory::problems::options::chosen;
 use theory::problems::{ProblemOption, each_problem};
@@ -24,6 +26,22 @@ pub struct Ready {
     pub experiment: Box<dyn Experiment>,
     /// Prediction. For a forced experiment the moments do not hold and are removed.
     pub prediction: Prediction,
+}
+
+impl Ready {
+    /// Makes the first draws from an address on, block after block.
+    pub fn draws(&self, address: Address, count: usize) -> DrawBuffer {
+        #[allow(clippy::cast_possible_truncation)] // 2¹⁴
+        let length = BLOCK as usize;
+        let channels = self.prediction.channels.len();
+        let (mut all, mut block) = (DrawBuffer::new(channels), DrawBuffer::new(channels));
+        for (number, start) in (0..count).step_by(length).enumerate() {
+            let mut streams = Address { block: number as u64, ..address }.streams();
+            self.experiment.fill(&mut streams, (count - start).min(length), &mut block);
+            all.append(&block);
+        }
+        all
+    }
 }
 
 /// Form of a problem of the catalogue, before a case is read.

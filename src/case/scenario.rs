@@ -12,7 +12,7 @@ use crate::case::sweep::{SweptQuantity, Variation};
 use estimators::recipes::{controls, sampling};
 use estimators::setup::Parts;
 use estimators::trial::Joined;
-use estimators::{Knowledge, RayView, Refusal, Site};
+use estimators::{DrawBuffer, Knowledge, RayView, Refusal, Site};
 use media::body::RayNeed;
 use media::catalogue::Settings;
 use media::{Body, Control, Medium, Piecewise, Volume, misses};
@@ -372,6 +372,22 @@ impl<'a> ScenarioAtPoint<'a> {
         };
         let prediction = Prediction { setup_lookups, ..prediction };
         refuse_what_cannot_be_computed(Ready { experiment: joined, prediction })
+    }
+
+    /// Makes the first draws of an estimator: those of a run with this seed. Their unit is `exp(−log_unit)` of their
+    /// channel's prediction: 1, unless τ is so large that T would underflow.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    ///
+    /// # Panics
+    ///
+    /// On processors that lack what kernels are compiled for, see [`numeric::fused::missing`].
+    pub fn draws(&self, estimator: usize, seed: u64, count: usize) -> Result<DrawBuffer, Refusal> {
+        let ready = self.prepare(estimator, self.case.pilots(seed, estimator))?;
+        let address = self.id(estimator).address(seed, self.alias(estimator).as_ref());
+        Ok(ready.draws(address, count))
     }
 
     /// Predicts an experiment, with σ̂ = `what_if` if that is given, without distributions; `None` if it is refused.

@@ -93,11 +93,6 @@ impl Spec {
         (found, faults.into_inner())
     }
 
-    /// Returns the entries of the file's top level.
-    pub fn entries(&self) -> &[Entry] {
-        &self.root
-    }
-
     /// Returns the name of a case's problem, and its settings; `None` without one.
     pub fn problem(&self) -> Option<(&str, &[Entry])> {
         let Value::Table(problems) = &entry(&self.root, "problem")?.node.value else { return None };

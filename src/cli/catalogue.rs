@@ -16,7 +16,7 @@ use crate::render::{self, Picture};
 use crate::{advise, phase, report};
 use estimators::recipes::{controls, sampling};
 use media::catalogue::{Page, suggestion};
-use theory::problems;
+use theory::problems::{self, MultipleScattering, Named};
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]
@@ -184,11 +184,16 @@ pub fn explain(
 /// Returns the pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
 fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
     let mut found = Vec::new();
+    let pictures = format!("estimators of {}", MultipleScattering::title());
     for (part, page) in pages(catalogue).into_iter().filter(|(_, page)| page.name() == name) {
         let mut text = page.text().trim_end().to_owned();
-        if let Some(case) = suite::example(&part, name) {
-            text += "\n\nA case to copy; `trueflight run case.toml` draws it:\n\n";
-            text += &fenced(&case);
+        if let Some(example) = page.example() {
+            text += if part == pictures {
+                "\n\nA picture to copy; `trueflight render picture.toml` renders it:\n\n"
+            } else {
+                "\n\nA case to copy; `trueflight run case.toml` draws it:\n\n"
+            };
+            text += &fenced(&example);
         }
         found.push((part, text));
     }

@@ -101,6 +101,15 @@ impl DrawBuffer {
         self.lookups.iter().map(|&lookups| u64::from(lookups)).sum()
     }
 
+    /// Adds the draws of another buffer behind its own.
+    pub fn append(&mut self, next: &Self) {
+        for (channel, next) in self.values.iter_mut().zip(&next.values) {
+            channel.extend_from_slice(next);
+        }
+        self.lookups.extend_from_slice(&next.lookups);
+        self.defects.extend_from_slice(&next.defects);
+    }
+
     /// Repeats the draws until their number is `count`.
     pub fn repeat(&mut self, count: usize) {
         fn cycled<T: Copy>(list: &mut Vec<T>, count: usize) {

@@ -10,6 +10,17 @@
 //! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
 //!
 //! Optical depth and free flight are closed forms.
+//!
+//! ```toml
+//! title = "An example of constant"
+//!
+//! [problem.transmittance]
+//! medium.constant.extinction = 0.8
+//! span = [0, 2]
+//! sampling = 1
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use super::Facts;
 use super::layered::{Heights, Layered, Stratified};

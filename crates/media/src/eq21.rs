@@ -23,6 +23,17 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36(2),
 //! 2017, Eq. 21.
+//!
+//! ```toml
+//! title = "An example of eq21"
+//!
+//! [problem.transmittance]
+//! volume.eq21 = {}
+//! ray = { origin = [11, 0, 0], direction = [0, 0, 1], length = 20 }
+//! sampling = 1
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::sync::Arc;

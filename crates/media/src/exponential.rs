@@ -24,6 +24,17 @@
 //!
 //! Relative error of τ: 1e-15 and the rounding of the exponent, |rate·x|·2.2e-16. Exponents
 //! above 709 are infinite in double precision: bound a medium that grows.
+//!
+//! ```toml
+//! title = "An example of exponential"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use super::Facts;
 use super::layered::{Heights, Stratified};

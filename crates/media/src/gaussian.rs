@@ -26,6 +26,17 @@
 //! changes by less than 0.001 as along a ray that is almost level, a series about the middle takes the place of the difference.
 //! D comes from the residual vector, never from a difference of squares. The error bound counts one
 //! rounding of each erf and the rounding of its argument; the free flight is a bracketed root.
+//!
+//! ```toml
+//! title = "An example of gaussian"
+//!
+//! [problem.transmittance]
+//! medium.gaussian = { peak = 1.2, centre = 0.7, width = 1 }
+//! span = [-2, 4]
+//! sampling = 1.2
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use std::sync::Arc;

@@ -45,6 +45,17 @@
 //! coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for cubics) and free flight
 //! (prefix sums and a bracketed root in one cell) use them. A cubic is the interpolation of the samples to
 //! rounding: 32 units in the last place of the largest sample, and the rounding of the position; see the test.
+//!
+//! ```toml
+//! title = "An example of grid"
+//!
+//! [problem.transmittance]
+//! volume.grid = { random = { size = [8, 6, 5], seed = 3 }, samples = "centres", bounds.box = { low = [-2, -1.5, -1], high = [2, 1.5, 1] } }
+//! ray = { origin = [-3, -0.9, -0.55], direction = [1, 0.3, 0.2], length = 6 }
+//! sampling = 1
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::sync::Arc;
 

@@ -32,6 +32,17 @@
 //! longest, and the agreement is 1e-12.
 //!
 //! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002; the integral by cells is this crate's.
+//!
+//! ```toml
+//! title = "An example of noise"
+//!
+//! [problem.transmittance]
+//! volume.noise = { extinction = 0.9, frequency = 0.5, octaves = 4, seed = 3, bounds.box = { low = [-3, -3, 0], high = [3, 3, 6] } }
+//! ray = { origin = [0.3, -0.2, -1], direction = [0.1, 0.05, 1], length = 8 }
+//! sampling = 0.9
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::sync::{Arc, OnceLock};
 

@@ -15,6 +15,16 @@
 //! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
 //!
 //! Optical depth and free flight are closed forms.
+//!
+//! ```toml
+//! title = "An example of piecewise-constant"
+//!
+//! [problem.transmittance]
+//! medium.piecewise-constant = { breaks = [0, 1, 2], values = [0.4, 0.8] }
+//! span = [0, 2]
+//! estimators = ["regular"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use super::piecewise_linear::Pieces;
 

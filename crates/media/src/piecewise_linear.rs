@@ -15,6 +15,17 @@
 //! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
 //!
 //! Optical depth and free flight are closed forms.
+//!
+//! ```toml
+//! title = "An example of piecewise-linear"
+//!
+//! [problem.transmittance]
+//! medium.piecewise-linear = { knots = [0, 2, 3], values = [0.2, 1, 0.4] }
+//! span = [0, 3]
+//! sampling = 1
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use super::layered::{Heights, Stratified};
 use super::{Extinction, Facts, OpticalDepth, Piecewise, Smoothness};

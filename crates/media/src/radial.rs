@@ -17,6 +17,17 @@
 //! `(D² + (s − s_c)²)/radius²`: σ_t is a polynomial of degree six at most, which four Gauss nodes
 //! integrate exactly. D comes from the residual vector, never from a difference of squares. Rounding
 //! carries x past 1 at the surface; a σ_t below 0 by that is 0. The free flight is a bracketed root.
+//!
+//! ```toml
+//! title = "An example of radial"
+//!
+//! [problem.transmittance]
+//! volume.radial = { centre = [0, 0, 1], radius = 1, coefficients = [2, -1.5] }
+//! ray = { origin = [0.2, 0, -1], direction = [0, 0, 1], length = 4 }
+//! sampling = 2
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::sync::Arc;
 

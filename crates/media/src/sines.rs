@@ -26,6 +26,17 @@
 //!
 //! with an error below L·(4 base + Σ|amplitudeᵢ φᵢ|)·2.2e-16, where |φ| is the sum of its terms' sizes; the free flight is a bracketed root.
 //! Quadrature takes a panel for each half period of the fastest wave.
+//!
+//! ```toml
+//! title = "An example of sines"
+//!
+//! [problem.transmittance]
+//! medium.sines = { base = 0.5, amplitudes = [0.3, -0.2], frequencies = [2.1, 7.3], phases = [0.4, 1] }
+//! span = [0, 3]
+//! sampling = 1
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use std::sync::Arc;

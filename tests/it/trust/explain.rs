@@ -1,11 +1,15 @@
 //! `trueflight explain`: valid cases to copy, pages for a terminal, and suggestions for unknown names.
 
 use trueflight::case::Case;
-use trueflight::case::suite;
-use trueflight::plan::Plan;
+use trueflight::case::catalogue::built_in;
+use trueflight::catalogue::{OwnPages, Page};
+use trueflight::recipes::{controls, sampling};
+use trueflight::record::Verdict;
+use trueflight::render::Picture;
+use trueflight::{phase, problems};
 
-use super::{listed, stdout, trueflight};
-use crate::common::{case, none, options, source};
+use super::{stdout, trueflight};
+use crate::common::{case, judged, none, options, rows_of, source};
 
 /// Returns the blocks of a case file in a page.
 fn blocks(page: &str) -> Vec<&str> {
@@ -20,39 +24,81 @@ fn error(arguments: &[&str]) -> String {
     String::from_utf8(output.stderr).expect("text")
 }
 
+/// Returns every page that a case or a picture may name, with its part of the catalogue.
+fn pages() -> Vec<(String, Page)> {
+    let recipes = [("sampling", sampling::CATALOGUE), ("controls", controls::CATALOGUE)];
+    let others = [("phases", phase::CATALOGUE), ("problems", problems::CATALOGUE)];
+    let others = recipes.into_iter().chain(others).map(|(part, list)| (part.to_owned(), list));
+    let lists = built_in().into_iter().chain(others);
+    lists
+        .flat_map(|(part, list)| list.pages.iter().map(move |page| (part.clone(), *page)))
+        .collect()
+}
+
 #[test]
-fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
-    let (mut wrong, mut planned) = (Vec::new(), 0);
-    for row in listed() {
-        let place = format!("{} ({})", row.name, row.part);
-        let kind = row.part.split(' ').next().unwrap_or_default();
-        let is_used =
-            ["media", "phases", "sampling", "controls", "estimators", "problems"].contains(&kind);
-        let Some(text) = suite::example(&row.part, &row.name) else {
-            if is_used && !row.part.contains("pictures") {
-                wrong.push(format!("{place}: list a case that has it in src/case/suite.rs"));
-            }
+fn every_page_that_a_file_may_name_shows_an_example_that_passes() {
+    let (mut wrong, mut cases, mut pictures) = (Vec::new(), Vec::new(), 0);
+    for (part, page) in pages() {
+        let name = page.name();
+        let place = format!("{name} ({part})");
+        let Some(text) = page.example() else {
+            wrong.push(format!("{place}: end its documentation with a case in a block of TOML"));
             continue;
         };
-        assert!(is_used, "{place} has a case");
-        assert!(text.contains(&row.name), "{place}: {text}");
-        match Case::read(&source("shown", &text)) {
-            Err(error) => wrong.push(format!("{place}: {}", error.render(false))),
-            Ok(case) => {
-                let cases = [case];
-                let plan = Plan::new(&cases, &options(1, 100_000));
-                planned += 1;
-                // The case of a problem may show a refused experiment beside others.
-                let refused =
-                    plan.experiments().filter(|(_, planned)| planned.outcome.is_err()).count();
-                if plan.experiments().count() == refused || (refused > 0 && kind != "problems") {
-                    wrong.push(format!("{place}: {refused} refused in\n{text}"));
-                }
+        let is_titled = text.starts_with(&format!("title = \"An example of {name}\"\n"));
+        if !is_titled || text.matches(&name).count() < 2 {
+            wrong.push(format!("{place}: its example is one of another page"));
+        }
+        if !page.source.contains("\n#![cfg_attr(not(doctest), doc = ") {
+            wrong.push(format!("{place}: no `draw_in_rust!` below its documentation"));
+        }
+        let source = source(&place, &text);
+        if text.contains("\n[picture.") {
+            pictures += 1;
+            let picture = Picture::read(&source, &OwnPages::default());
+            let record = picture.expect("a picture without mistakes").render(1, &|| {});
+            let exposed = record.exposures.iter().map(|exposure| &exposure.outcome);
+            let refused = exposed.filter_map(|outcome| outcome.as_ref().err());
+            wrong.extend(refused.map(|why| format!("{place}: {why}")));
+        } else {
+            match Case::read(&source) {
+                Ok(case) => cases.push(case),
+                Err(error) => wrong.push(error.render(false)),
             }
         }
     }
+    let rows = rows_of(judged(&cases, &options(1, 400_000)));
+    for row in rows.iter().filter(|row| row.verdict != Some(Verdict::Pass)) {
+        let (case, label, channel) = (&row.case.name, &row.experiment.label, &row.channel);
+        let reason = &row.reason;
+        wrong.push(format!("{case}: {label} {channel}: {:?}, {reason}", row.verdict));
+    }
     none(&wrong);
-    assert!(planned > 114, "only {planned} cases were planned");
+    assert!(cases.len() > 118 && pictures == 2, "{} cases, {pictures} pictures", cases.len());
+}
+
+/// The example of a page makes the same draws in a program as by `trueflight run`.
+#[test]
+fn draws_of_a_program_are_those_of_a_run() {
+    for (part, name) in [
+        ("estimators of rod", "analog"),
+        ("estimators of transmittance with media", "hero"),
+        ("sampling", "pilot"),
+    ] {
+        let mut pages = pages().into_iter();
+        let page = pages.find(|(of, page)| of == part && page.name() == name).expect("a page");
+        let cases = [case("shown", &page.1.example().expect("an example"))];
+        let run = rows_of(judged(&cases, &options(7, 40_000)));
+        let count = run[0].experiment.draws.expect("draws");
+        let at = cases[0].at(None).expect("the case as written");
+        let draws = at.draws(0, 7, usize::try_from(count).expect("few")).expect("draws");
+        assert_eq!(draws.lookups.len() as u64, count);
+        for (row, values) in run.iter().zip(&draws.values) {
+            let mean = values.iter().sum::<f64>() / count as f64;
+            let measured = row.mean.expect("a mean");
+            assert!((mean / measured - 1.0).abs() < 1e-12, "{name}: {mean}, {measured}");
+        }
+    }
 }
 
 #[test]

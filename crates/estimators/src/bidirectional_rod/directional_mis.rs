@@ -19,6 +19,21 @@
 //! variance of their sum is bounded: its root is at most the sum of theirs.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
+//!
+//! ```toml
+//! title = "An example of directional-mis"
+//!
+//! [problem.rod]
+//! medium = 1.2
+//! span = [0, 1.5]
+//! albedo = 0.8
+//! forward = 0.7
+//! sensor = "transmitted"
+//! orders = 2
+//! sampling = 2
+//! estimators = ["directional-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{DIRECTIONAL, Estimate};
 

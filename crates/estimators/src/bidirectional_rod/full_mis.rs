@@ -21,6 +21,21 @@
 //! variance of their sum is bounded: its root is at most the sum of theirs.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, sections 5.2 and 5.5, Eqs. 42–44, and table 1, “BPT: Full MIS”.
+//!
+//! ```toml
+//! title = "An example of full-mis"
+//!
+//! [problem.rod]
+//! medium = 1.2
+//! span = [0, 1.5]
+//! albedo = 0.8
+//! forward = 0.7
+//! sensor = "transmitted"
+//! orders = 2
+//! sampling = 2
+//! estimators = ["full-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Estimate, FULL};
 

@@ -17,6 +17,21 @@
 //!
 //! Source: E. Lafortune, Y. Willems, *Rendering Participating Media with Bidirectional Path Tracing*, Eurographics
 //! Workshop on Rendering 1996; Miller, Georgiev, Jarosz 2019, Eq. 44.
+//!
+//! ```toml
+//! title = "An example of technique"
+//!
+//! [problem.rod]
+//! medium = 1.2
+//! span = [0, 1.5]
+//! albedo = 0.8
+//! forward = 0.7
+//! sensor = "transmitted"
+//! orders = 2
+//! sampling = 2
+//! estimators = [{ technique.light-vertices = 1 }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Estimate, TECHNIQUE};
 use media::catalogue::Settings;

@@ -19,6 +19,20 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; the bound is derived: see the theory of walks that are
 //! relative to the density of one walker.
+//!
+//! ```toml
+//! title = "An example of hero"
+//!
+//! [problem.slab]
+//! medium = [1.1, 1, 0.9]
+//! span = [0, 1]
+//! albedos = [0.7, 0.75, 0.8]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! incidence.collimated.cosine = 0.8
+//! sampling = 1.6
+//! estimators = ["hero"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::chromatic::page::OfKind;
 use crate::setup::walker::HERO;

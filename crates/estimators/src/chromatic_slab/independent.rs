@@ -15,6 +15,20 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.
+//!
+//! ```toml
+//! title = "An example of independent"
+//!
+//! [problem.slab]
+//! medium = [1.1, 1, 0.9]
+//! span = [0, 1]
+//! albedos = [0.7, 0.75, 0.8]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! incidence.collimated.cosine = 0.8
+//! sampling = 1.6
+//! estimators = ["independent"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::chromatic::page::OfKind;
 use crate::setup::walker::INDEPENDENT;

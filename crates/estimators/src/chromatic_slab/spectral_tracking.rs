@@ -21,6 +21,20 @@
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.slab]
+//! medium = [1.1, 1, 0.9]
+//! span = [0, 1]
+//! albedos = [0.7, 0.75, 0.8]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! incidence.collimated.cosine = 0.8
+//! sampling = 1.6
+//! estimators = ["spectral-tracking"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::chromatic::page::OfKind;
 use crate::setup::walker::SPECTRAL_TRACKING;

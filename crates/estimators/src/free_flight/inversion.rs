@@ -14,6 +14,16 @@
 //! of these alone, may differ between machines.
 //!
 //! Source: Szirmay-Kalos et al. 2017, Eq. 4.
+//!
+//! ```toml
+//! title = "An example of inversion"
+//!
+//! [problem.free-flight]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! estimators = ["inversion"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Draw, Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, walks};
 use numeric::rng::exponential;

@@ -11,6 +11,17 @@
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
+//!
+//! ```toml
+//! title = "An example of woodcock"
+//!
+//! [problem.free-flight]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.6
+//! estimators = ["woodcock"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};

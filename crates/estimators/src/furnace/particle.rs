@@ -25,5 +25,18 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`; the bounds are derived in `theory/space.rs`.
+//!
+//! ```toml
+//! title = "An example of particle"
+//!
+//! [problem.furnace]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! sampling = 1.2
+//! estimators = [{ particle.rule = "weighted" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::space::Walker;

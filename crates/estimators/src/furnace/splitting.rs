@@ -21,5 +21,18 @@
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model); the bound on the number of
 //! particles is that of any renderer that splits.
+//!
+//! ```toml
+//! title = "An example of splitting"
+//!
+//! [problem.furnace]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! sampling = 1.2
+//! estimators = [{ splitting = { rule = "analog", depth = 3 } }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::space::Splitter;

@@ -16,5 +16,18 @@
 //! `σ̂ ≥ σ_t`, with all their moments known.
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 4.1, `SimulateParticle`.
+//!
+//! ```toml
+//! title = "An example of particle"
+//!
+//! [problem.infinite-medium]
+//! volume = 1
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 1 }
+//! albedo = 0.7
+//! phase.henyey-greenstein.g = 0.6
+//! sampling = 1.2
+//! estimators = [{ particle.rule = "analog" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::space::Walker;

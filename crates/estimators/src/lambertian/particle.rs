@@ -20,5 +20,18 @@
 //! Source: L. Szirmay-Kalos et al. 2017, section 4.1, `SimulateParticle`; A. Mazzolo, C. de Mulatier, A.
 //! Zoia, *Cauchy's formulas for random walks in bounded domains*, Journal of Mathematical Physics 55
 //! (2014).
+//!
+//! ```toml
+//! title = "An example of particle"
+//!
+//! [problem.lambertian]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedo = 1
+//! phase = "isotropic"
+//! sampling = 1.2
+//! estimators = [{ particle.rule = "terminating" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::space::Walker;

@@ -16,5 +16,18 @@
 //! Its channels are those of `particle` without the tentative collisions.
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model).
+//!
+//! ```toml
+//! title = "An example of splitting"
+//!
+//! [problem.lambertian]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedo = 1
+//! phase = "isotropic"
+//! sampling = 1.2
+//! estimators = [{ splitting = { rule = "analog", depth = 2 } }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::space::Splitter;

@@ -23,6 +23,20 @@
 //! Volumes*, ACM Transactions on Graphics 36 (2017); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path
 //! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
 //! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
+//!
+//! ```toml
+//! title = "An example of directional-mis"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.9
+//! forward = 0.75
+//! light = "emitter"
+//! sampling = 1.6
+//! estimators = ["directional-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Lit, lit, read_shadow};
 use crate::Estimator;

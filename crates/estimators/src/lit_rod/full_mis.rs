@@ -23,6 +23,20 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.
+//!
+//! ```toml
+//! title = "An example of full-mis"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.9
+//! forward = 0.75
+//! light = "emitter"
+//! sampling = 1.6
+//! estimators = ["full-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Lit, lit, read_shadow};
 use crate::Estimator;

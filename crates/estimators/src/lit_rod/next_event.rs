@@ -21,6 +21,20 @@
 //! Source: R. R. Coveyou, V. R. Cain, K. J. Yost, *Adjoint and Importance in Monte Carlo Application*, Nuclear
 //! Science and Engineering 27 (1967); J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating
 //! Attenuation in Participating Media*, ACM Transactions on Graphics 33 (2014).
+//!
+//! ```toml
+//! title = "An example of next-event"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.9
+//! forward = 0.75
+//! light = "emitter"
+//! sampling = 1.6
+//! estimators = [{ next-event.shadow = "delta" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Lit, lit, read_shadow};
 use crate::Estimator;

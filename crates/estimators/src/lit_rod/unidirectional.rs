@@ -12,6 +12,20 @@
 //! Carlo neutronics calculations in reactors and other systems of complex geometry*, ANL-7050 (1965); B. Miller, I.
 //! Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM Transactions on Graphics
 //! 38 (2019), section 5.2.
+//!
+//! ```toml
+//! title = "An example of unidirectional"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.9
+//! forward = 0.75
+//! light = "emitter"
+//! sampling = 1.6
+//! estimators = ["unidirectional"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Lit, lit};
 use crate::Estimator;

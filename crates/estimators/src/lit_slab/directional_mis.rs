@@ -20,5 +20,19 @@
 //! Volumes*, ACM Transactions on Graphics 36 (2017); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path
 //! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
 //! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
+//!
+//! ```toml
+//! title = "An example of directional-mis"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 1.5]
+//! albedo = 0.9
+//! phase.henyey-greenstein.g = 0.85
+//! light.cap.cosine = 0.9
+//! sampling = 1.6
+//! estimators = ["directional-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::lit_rod::directional_mis::DirectionalMis;

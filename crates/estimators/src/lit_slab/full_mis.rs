@@ -18,5 +18,19 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.
+//!
+//! ```toml
+//! title = "An example of full-mis"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 1.5]
+//! albedo = 0.9
+//! phase.henyey-greenstein.g = 0.85
+//! light.cap.cosine = 0.9
+//! sampling = 1.6
+//! estimators = ["full-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::lit_rod::full_mis::FullMis;

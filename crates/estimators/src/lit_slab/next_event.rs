@@ -18,5 +18,19 @@
 //! Source: R. R. Coveyou, V. R. Cain, K. J. Yost, *Adjoint and Importance in Monte Carlo Application*, Nuclear
 //! Science and Engineering 27 (1967); J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating
 //! Attenuation in Participating Media*, ACM Transactions on Graphics 33 (2014).
+//!
+//! ```toml
+//! title = "An example of next-event"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 1.5]
+//! albedo = 0.9
+//! phase.henyey-greenstein.g = 0.85
+//! light.cap.cosine = 0.9
+//! sampling = 1.6
+//! estimators = [{ next-event.shadow = "delta" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::lit_rod::next_event::NextEvent;

@@ -13,5 +13,19 @@
 //! Carlo neutronics calculations in reactors and other systems of complex geometry*, ANL-7050 (1965); B. Miller, I.
 //! Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM Transactions on Graphics
 //! 38 (2019), section 5.2.
+//!
+//! ```toml
+//! title = "An example of unidirectional"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 1.5]
+//! albedo = 0.9
+//! phase.henyey-greenstein.g = 0.85
+//! light.cap.cosine = 0.9
+//! sampling = 1.6
+//! estimators = ["unidirectional"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::lit_rod::unidirectional::Unidirectional;

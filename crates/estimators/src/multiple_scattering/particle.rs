@@ -18,5 +18,21 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
+//!
+//! ```toml
+//! title = "An example of particle"
+//!
+//! [picture.multiple-scattering]
+//! size = [32, 32]
+//! lookups = 50
+//! volume.eq21 = {}
+//! albedo = 1
+//! phase = "isotropic"
+//! camera = { position = [0, 0, -22], target = [0, 0, 10], angle = 38 }
+//! reference.closed-form = {}
+//! sampling = 1
+//! estimators = [{ particle.rule = "non-terminating" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!(picture))]
 
 pub use crate::space::Walker;

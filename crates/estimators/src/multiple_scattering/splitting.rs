@@ -16,5 +16,21 @@
 //! | `roulette` | as in `particle` | none |
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model).
+//!
+//! ```toml
+//! title = "An example of splitting"
+//!
+//! [picture.multiple-scattering]
+//! size = [32, 32]
+//! lookups = 50
+//! volume.eq21 = {}
+//! albedo = 1
+//! phase = "isotropic"
+//! camera = { position = [0, 0, -22], target = [0, 0, 10], angle = 38 }
+//! reference.closed-form = {}
+//! sampling = 1
+//! estimators = [{ splitting = { rule = "analog", depth = 2 } }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!(picture))]
 
 pub use crate::space::Splitter;

@@ -19,6 +19,19 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
+//!
+//! ```toml
+//! title = "An example of adaptive"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! forward = 0.6
+//! sampling = 1.6
+//! estimators = ["adaptive"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::by_rule;
 

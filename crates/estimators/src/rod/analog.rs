@@ -11,6 +11,19 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.2.
+//!
+//! ```toml
+//! title = "An example of analog"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! forward = 0.6
+//! sampling = 1.6
+//! estimators = ["analog"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::by_rule;
 

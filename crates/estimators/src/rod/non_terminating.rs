@@ -16,6 +16,19 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.2 and 3.3, Eq. 12.
+//!
+//! ```toml
+//! title = "An example of non-terminating"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! forward = 0.6
+//! sampling = 1.6
+//! estimators = ["non-terminating"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::by_rule;
 

@@ -23,6 +23,19 @@
 //!
 //! Source: H. Kahn, *Use of Different Monte Carlo Sampling Techniques*, RAND P-766 (1955); the walk: that
 //! of `non-terminating`.
+//!
+//! ```toml
+//! title = "An example of roulette"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! forward = 0.6
+//! sampling = 1.6
+//! estimators = ["roulette"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::ByRule;
 use super::walk::{self, RuleAndRoulette};

@@ -19,6 +19,20 @@
 //! All four moments are known: those of the rest of a walk obey a chain of linear equations.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of attenuation-driven"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = ["attenuation-driven"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{ByPlan, Plan, Planned, Technique};
 use crate::Inputs;

@@ -14,6 +14,20 @@
 //!
 //! Source: J. Talbot, D. Cline, P. Egbert, *Importance resampling for global illumination*,
 //! Eurographics Symposium on Rendering (2005); Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of attenuation-resampled"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = ["attenuation-resampled"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{ByPlan, Plan, Planned, Technique};
 use crate::Inputs;

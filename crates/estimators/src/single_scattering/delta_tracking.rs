@@ -17,6 +17,20 @@
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965); Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of delta-tracking"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = ["delta-tracking"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{Absorption, ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;

@@ -20,6 +20,21 @@
 //! variance grows as `1/D³` when the light comes near the ray.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of scattering-driven"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! control = 0.6
+//! estimators = ["scattering-driven"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;

@@ -19,6 +19,20 @@
 //! joint distribution into account.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of shared-walk"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = [{ shared-walk.points = 4 }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{ByPlan, Plan, Planned, Technique};
 use super::shared::MAX_POINTS;

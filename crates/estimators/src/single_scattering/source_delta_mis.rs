@@ -26,6 +26,20 @@
 //! SIGGRAPH 1995, section 3; C. Kulla, M. Fajardo, *Importance Sampling Techniques for Path Tracing
 //! in Participating Media*, Computer Graphics Forum 31 (2012); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering
 //! path integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 5.
+//!
+//! ```toml
+//! title = "An example of source-delta-mis"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = ["source-delta-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{Absorption, ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;

@@ -20,6 +20,20 @@
 //!
 //! Source: C. Kulla, M. Fajardo, *Importance Sampling Techniques for Path Tracing in Participating
 //! Media*, Computer Graphics Forum 31 (2012), section 4; Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of source-driven"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = ["source-driven"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;

@@ -15,6 +15,21 @@
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*,
 //! SIGGRAPH 1995, section 3; Szirmay-Kalos et al. 2017, section 4.3.
+//!
+//! ```toml
+//! title = "An example of source-scattering-mis"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! control = 0.6
+//! estimators = ["source-scattering-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::plan::{ByPlan, Plan, Planned, Technique, Vertices};
 use crate::Inputs;

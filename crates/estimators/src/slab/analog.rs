@@ -14,5 +14,19 @@
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965); B. Miller, I. Georgiev, W. Jarosz, *A
 //! null-scattering path integral formulation of light transport*, ACM Transactions on Graphics 38
 //! (2019), section 5.2.
+//!
+//! ```toml
+//! title = "An example of analog"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! phase = "isotropic"
+//! incidence.collimated.cosine = 0.6
+//! sampling = 1.6
+//! estimators = ["analog"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::rod::analog::Analog;

@@ -16,5 +16,19 @@
 //! Transactions on Graphics 38 (2019), section 5.2; the probabilities below σ_t: M. Galtier et al., *Integral
 //! formulation of null-collision Monte Carlo algorithms*, Journal of Quantitative Spectroscopy and Radiative
 //! Transfer 125 (2013).
+//!
+//! ```toml
+//! title = "An example of weighted"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! phase = "isotropic"
+//! incidence.collimated.cosine = 0.6
+//! sampling = 1.6
+//! estimators = ["weighted"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::rod::weighted::Weighted;

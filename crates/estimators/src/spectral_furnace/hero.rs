@@ -20,6 +20,23 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1; the bound is derived: see the theory of walks that are
 //! relative to the density of one walker.
+//!
+//! ```toml
+//! title = "An example of hero"
+//!
+//! [problem.furnace]
+//! volume = [
+//!   { constant = { extinction = 1.1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } },
+//!   { constant = { extinction = 1.0, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } },
+//!   { constant = { extinction = 0.9, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } },
+//! ]
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedos = [0.7, 0.75, 0.8]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! sampling = 1.6
+//! estimators = ["hero"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::chromatic::page::OfKind;
 use crate::setup::walker::HERO;

@@ -21,6 +21,23 @@
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.furnace]
+//! volume = [
+//!   { constant = { extinction = 1.1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } },
+//!   { constant = { extinction = 1.0, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } },
+//!   { constant = { extinction = 0.9, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } },
+//! ]
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedos = [0.7, 0.75, 0.8]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! sampling = 1.6
+//! estimators = ["spectral-tracking"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::chromatic::page::OfKind;
 use crate::setup::walker::SPECTRAL_TRACKING;

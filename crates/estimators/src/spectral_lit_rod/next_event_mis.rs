@@ -21,6 +21,20 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.
+//!
+//! ```toml
+//! title = "An example of next-event-mis"
+//!
+//! [problem.rod]
+//! medium = [1.1, 1, 0.9]
+//! span = [0, 2]
+//! albedos = [0.8, 0.75, 0.7]
+//! forward = [0.75, 0.75, 0.75]
+//! light = "emitter"
+//! sampling = 1.6
+//! estimators = ["next-event-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::HeroMis;
 

@@ -19,6 +19,20 @@
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.rod]
+//! medium = [1.05, 1, 0.95]
+//! span = [0, 1]
+//! albedos = [0.9, 0.85, 0.8]
+//! forward = 1
+//! light = "emitter"
+//! sampling = 1.6
+//! estimators = [{ spectral-tracking.probabilities = "average" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Albedos, realisable, spectrum};
 use crate::setup::channels;

@@ -16,6 +16,19 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
+//!
+//! ```toml
+//! title = "An example of spectral-mis"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedos = [0.8, 0.7, 0.6]
+//! forward = 0.75
+//! sampling = 1.2
+//! estimators = ["spectral-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::OfKind;
 use crate::setup::walker::MIS;

@@ -18,6 +18,19 @@
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedos = [0.8, 0.7, 0.6]
+//! forward = 0.75
+//! sampling = 1.2
+//! estimators = [{ spectral-tracking.probabilities = "average" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::OfKind;
 use crate::setup::walker::SPECTRAL_TRACKING;

@@ -16,6 +16,20 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.
+//!
+//! ```toml
+//! title = "An example of independent"
+//!
+//! [problem.single-scattering]
+//! volume = [0.9, 0.8, 0.7]
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }
+//! light.position = [0.5, 0, 2]
+//! albedos = [0.9, 0.8, 0.7]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! sampling = 1.2
+//! estimators = ["independent"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::OfKind;
 use crate::setup::walker::INDEPENDENT;

@@ -20,6 +20,20 @@
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.single-scattering]
+//! volume = [0.9, 0.8, 0.7]
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }
+//! light.position = [0.5, 0, 2]
+//! albedos = [0.9, 0.8, 0.7]
+//! phases = ["isotropic", "isotropic", "isotropic"]
+//! sampling = 1.2
+//! estimators = ["spectral-tracking"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::OfKind;
 use crate::setup::walker::SPECTRAL_TRACKING;

@@ -13,5 +13,19 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
+//!
+//! ```toml
+//! title = "An example of independent"
+//!
+//! [problem.slab]
+//! medium = 0.8
+//! span = [0, 2]
+//! albedos = [0.6, 0.58, 0.56]
+//! phase = "isotropic"
+//! incidence.collimated.cosine = 0.5
+//! sampling = 0.8
+//! estimators = ["independent"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::spectral_rod::independent::Independent;

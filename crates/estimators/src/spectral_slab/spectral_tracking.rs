@@ -19,5 +19,19 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1; critical slabs: K. M. Case, P. F.
 //! Zweifel, *Linear Transport Theory* (1967).
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.slab]
+//! medium = 0.8
+//! span = [0, 2]
+//! albedos = [0.6, 0.58, 0.56]
+//! phase = "isotropic"
+//! incidence.collimated.cosine = 0.5
+//! sampling = 0.8
+//! estimators = [{ spectral-tracking.probabilities = "average" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 pub use crate::spectral_rod::spectral_tracking::SpectralTracking;

@@ -14,6 +14,21 @@
 //!
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
+//!
+//! ```toml
+//! title = "An example of common-ratio"
+//!
+//! [problem.transmittance]
+//! medium = [
+//!   { exponential = { extinction = 1.2, rate = 0.5 } },
+//!   { exponential = { extinction = 1.0, rate = 0.5 } },
+//!   { exponential = { extinction = 0.8, rate = 0.5 } },
+//! ]
+//! span = [0, 3]
+//! sampling = 1.5
+//! estimators = ["common-ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::{COMMON_RATIO, OfKind};
 

@@ -19,6 +19,21 @@
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
+//!
+//! ```toml
+//! title = "An example of spectral-mis"
+//!
+//! [problem.transmittance]
+//! medium = [
+//!   { exponential = { extinction = 1.2, rate = 0.5 } },
+//!   { exponential = { extinction = 1.0, rate = 0.5 } },
+//!   { exponential = { extinction = 0.8, rate = 0.5 } },
+//! ]
+//! span = [0, 3]
+//! sampling = 1.5
+//! estimators = [{ spectral-mis.collisions = "delta" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::OfKind;
 use crate::setup::walker::MIS;

@@ -19,6 +19,21 @@
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+//!
+//! ```toml
+//! title = "An example of spectral-tracking"
+//!
+//! [problem.transmittance]
+//! medium = [
+//!   { exponential = { extinction = 1.2, rate = 0.5 } },
+//!   { exponential = { extinction = 1.0, rate = 0.5 } },
+//!   { exponential = { extinction = 0.8, rate = 0.5 } },
+//! ]
+//! span = [0, 3]
+//! sampling = 1.5
+//! estimators = [{ spectral-tracking.probabilities = "average" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::OfKind;
 use crate::setup::walker::SPECTRAL_TRACKING;

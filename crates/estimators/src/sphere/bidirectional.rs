@@ -34,6 +34,20 @@
 //! (1994); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
 //! Transactions on Graphics 38 (2019), section 5.5, Eqs. 43 and 44. Densities are derived in
 //! `estimators/sphere/combined.rs`, the bound in `theory/sphere/spread.rs`.
+//!
+//! ```toml
+//! title = "An example of bidirectional"
+//!
+//! [problem.ball]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0.2, 0, -2], direction = [0, 0, 1] }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! light.black-sphere.radius = 0.5
+//! sampling = 1.6
+//! estimators = ["bidirectional"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::{Connected, Connecting, Method};
 use super::sharing::{SharedTechniques, Subpaths};

@@ -25,6 +25,20 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the heuristics: E. Veach, *Robust
 //! Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997). The bound is derived in
 //! `theory/sphere/spread.rs`.
+//!
+//! ```toml
+//! title = "An example of directional-mis"
+//!
+//! [problem.ball]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0.2, 0, -2], direction = [0, 0, 1] }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! light.black-sphere.radius = 0.5
+//! sampling = 1.6
+//! estimators = [{ directional-mis.rule = "analog" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;

@@ -23,6 +23,20 @@
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3; J. Novák, A. Selle, W. Jarosz,
 //! *Residual ratio tracking for estimating attenuation in participating media*, ACM Transactions on
 //! Graphics 33 (2014). The bound is derived in `theory/sphere/spread.rs`.
+//!
+//! ```toml
+//! title = "An example of next-event"
+//!
+//! [problem.ball]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0.2, 0, -2], direction = [0, 0, 1] }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! light.black-sphere.radius = 0.5
+//! sampling = 1.6
+//! estimators = [{ next-event.rule = "weighted" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;

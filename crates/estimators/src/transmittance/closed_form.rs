@@ -11,6 +11,16 @@
 //!
 //! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
 //! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
+//!
+//! ```toml
+//! title = "An example of closed-form"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! estimators = ["closed-form"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Draw, Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, walks};
 use numeric::Lane;

@@ -17,6 +17,18 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
+//!
+//! ```toml
+//! title = "An example of double"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 0.5
+//! control = "mean"
+//! estimators = ["double"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;

@@ -16,6 +16,17 @@
 //! Source: Y. Yue, K. Iwasaki, B.-Y. Chen, Y. Dobashi, T. Nishita, *Unbiased, adaptive stochastic
 //! sampling for rendering inhomogeneous participating media*, ACM Transactions on Graphics 29
 //! (2010).
+//!
+//! ```toml
+//! title = "An example of local-majorant"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling.local-majorants.segments = 10
+//! estimators = ["local-majorant"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::woodcock::ZERO_OR_ONE;
 use crate::walks::{self, Route, TentativeCollision, Walk};

@@ -18,6 +18,17 @@
 //! deep-penetration Monte Carlo calculations*, Nuclear Science and Engineering 65 (1978);
 //! I. Georgiev et al., *Integral formulations of volumetric transmittance*, ACM Transactions on
 //! Graphics 38 (2019).
+//!
+//! ```toml
+//! title = "An example of next-flight"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.6
+//! estimators = ["next-flight"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::scoring::Share;
 use crate::{Setup, scored};

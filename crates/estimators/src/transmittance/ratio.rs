@@ -16,6 +16,17 @@
 //!
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
+//!
+//! ```toml
+//! title = "An example of ratio"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};

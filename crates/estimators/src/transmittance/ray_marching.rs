@@ -20,6 +20,17 @@
 //!
 //! Source: M. Raab, D. Seibert, A. Keller, *Unbiased Global Illumination with Participating Media*,
 //! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
+//!
+//! ```toml
+//! title = "An example of ray-marching"
+//! expect = "biased"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! estimators = [{ ray-marching.steps = 5 }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::walks::slots;
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};

@@ -12,6 +12,16 @@
 //!
 //! Source: J. Amanatides, A. Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
 //! 1987; the name after Novák et al. 2018, section 4.2.
+//!
+//! ```toml
+//! title = "An example of regular"
+//!
+//! [problem.transmittance]
+//! medium.piecewise-constant = { breaks = [0, 1, 2], values = [0.4, 0.8] }
+//! span = [0, 2]
+//! estimators = ["regular"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, walks};
 use media::{Extinction, Lookups};

@@ -28,6 +28,17 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eqs. 9, 12, 18–20 and `SimulateParticle`.
+//!
+//! ```toml
+//! title = "An example of single"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! estimators = [{ single.rule = "terminating" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use media::catalogue::{Domain, Settings};

@@ -16,6 +16,17 @@
 //!
 //! Source: I. Georgiev, Z. Misso, T. Hachisuka, D. Nowrouzezahrai, J. Křivánek, W. Jarosz,
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
+//!
+//! ```toml
+//! title = "An example of unidirectional-mis"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.6
+//! estimators = ["unidirectional-mis"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::scoring::Share;
 use crate::{Setup, scored};

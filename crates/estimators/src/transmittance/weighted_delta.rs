@@ -14,6 +14,17 @@
 //! Journal of Quantitative Spectroscopy and Radiative Transfer 125 (2013); L. W. G. Morgan,
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
+//!
+//! ```toml
+//! title = "An example of weighted-delta"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! estimators = ["weighted-delta"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;

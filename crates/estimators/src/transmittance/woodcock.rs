@@ -17,6 +17,17 @@
 //! for Monte Carlo neutronics calculations in reactors and other systems of complex geometry*,
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
+//!
+//! ```toml
+//! title = "An example of woodcock"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.6
+//! estimators = ["woodcock"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use crate::{Estimator, Inputs, Refusal, Setup, Traits, product_draws};
 use theory::Prediction;

@@ -18,6 +18,18 @@
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 4.2–4.3, Figures 5 and 8.
+//!
+//! ```toml
+//! title = "An example of double"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! distances = 4
+//! sampling = 1.2
+//! estimators = ["double"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::ray_view::{self, RayView};
 use crate::transmittance::product::{Invariant, Subtracted};

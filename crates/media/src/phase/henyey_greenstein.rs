@@ -21,6 +21,20 @@
 //!
 //! Source: L. G. Henyey, J. L. Greenstein, *Diffuse radiation in the Galaxy*, Astrophysical Journal
 //! 93, 70–83 (1941), equation 2.
+//!
+//! ```toml
+//! title = "An example of henyey-greenstein"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! phase.henyey-greenstein.g = 0.6
+//! incidence.collimated.cosine = 0.6
+//! sampling = 1.2
+//! estimators = ["weighted"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::f64::consts::PI;
 

@@ -5,6 +5,20 @@
 //! ```
 //!
 //! `cos θ = 2u − 1` for a uniform number u. It has no settings.
+//!
+//! ```toml
+//! title = "An example of isotropic"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! phase.isotropic = {}
+//! incidence.collimated.cosine = 0.6
+//! sampling = 1.2
+//! estimators = ["weighted"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::f64::consts::PI;
 

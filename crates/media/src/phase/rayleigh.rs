@@ -10,6 +10,20 @@
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), section 1.4; J. R.
 //! Frisvad, *Importance sampling the Rayleigh phase function*, Journal of the Optical Society of
 //! America A 28(12), 2436–2441 (2011).
+//!
+//! ```toml
+//! title = "An example of rayleigh"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! phase.rayleigh = {}
+//! incidence.collimated.cosine = 0.6
+//! sampling = 1.2
+//! estimators = ["weighted"]
+//! ```
+#![cfg_attr(not(doctest), doc = crate::draw_in_rust!())]
 
 use std::f64::consts::PI;
 

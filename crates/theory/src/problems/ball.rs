@@ -33,6 +33,20 @@
 //!
 //! Source: R. Peierls, *Critical conditions in neutron multiplication*, Mathematical Proceedings of the
 //! Cambridge Philosophical Society 35 (1939).
+//!
+//! ```toml
+//! title = "An example of ball"
+//!
+//! [problem.ball]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0.2, 0, -2], direction = [0, 0, 1] }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! light.black-sphere.radius = 0.5
+//! sampling = 1.6
+//! estimators = [{ particle.rule = "weighted" }, { next-event.rule = "weighted" }, "bidirectional"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::slice;
 

@@ -11,6 +11,17 @@
 //!
 //! Another program may write a flight that leaves as S, as any larger number, as `inf` or as `-1`.
 //! NaN and other negative numbers are no distances; `judge` names them.
+//!
+//! ```toml
+//! title = "An example of free-flight"
+//!
+//! [problem.free-flight]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.6
+//! estimators = ["inversion", "woodcock"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::slice;
 use std::sync::OnceLock;

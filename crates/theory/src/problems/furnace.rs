@@ -30,6 +30,19 @@
 //! Sources: G. Kirchhoff, *Ueber das Verhältniss zwischen dem Emissionsvermögen und dem Absorptionsvermögen
 //! der Körper für Wärme und Licht*, Annalen der Physik 185 (1860); channels: B. Miller, I. Georgiev, W. Jarosz, *A
 //! Null-Scattering Path Integral Formulation of Light Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
+//!
+//! ```toml
+//! title = "An example of furnace"
+//!
+//! [problem.furnace]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedo = 0.8
+//! phase = "isotropic"
+//! sampling = 1.2
+//! estimators = [{ particle.rule = "analog" }, { particle.rule = "weighted" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::channels::{Channel, media, read_channels};
 use super::scene::require_bounds;

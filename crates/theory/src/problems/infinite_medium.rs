@@ -21,6 +21,19 @@
 //! that never ends is refused; it needs a rule that terminates, or roulette.
 //!
 //! Source: K. M. Case, P. F. Zweifel, *Linear Transport Theory* (Addison–Wesley, 1967), section 2.5.
+//!
+//! ```toml
+//! title = "An example of infinite-medium"
+//!
+//! [problem.infinite-medium]
+//! volume = 1
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 1 }
+//! albedo = 0.7
+//! phase.henyey-greenstein.g = 0.6
+//! sampling = 1.2
+//! estimators = [{ particle.rule = "analog" }, { particle.rule = "terminating" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Albedo, Problem, Scene};
 use media::body::RayNeed;

@@ -33,6 +33,19 @@
 //! Source: A. Mazzolo, C. de Mulatier, A. Zoia, *Cauchy's formulas for random walks in bounded domains*,
 //! Journal of Mathematical Physics 55, 083308 (2014); S. Blanco, R. Fournier, *An invariance property of
 //! diffusive random walks*, Europhysics Letters 61 (2003).
+//!
+//! ```toml
+//! title = "An example of lambertian"
+//!
+//! [problem.lambertian]
+//! volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+//! ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+//! albedo = 1
+//! phase = "isotropic"
+//! sampling = 1.2
+//! estimators = [{ particle.rule = "analog" }, { particle.rule = "terminating" }]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::sync::OnceLock;
 

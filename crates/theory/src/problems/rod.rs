@@ -60,6 +60,19 @@
 //! Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*, ACM Transactions on
 //! Graphics 38 (2019), section 5; albedos: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking
 //! for Rendering Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5, in one dimension.
+//!
+//! ```toml
+//! title = "An example of rod"
+//!
+//! [problem.rod]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! forward = 0.6
+//! sampling = 1.6
+//! estimators = ["analog", "terminating", "weighted"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::slice;
 

@@ -35,6 +35,20 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.3, Eq. 22; channels: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of
 //! Light Transport*, ACM Transactions on Graphics 38 (2019), section 5.
+//!
+//! ```toml
+//! title = "An example of single-scattering"
+//!
+//! [problem.single-scattering]
+//! volume = 0.8
+//! ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+//! light.position = [0.5, 0, 2.5]
+//! albedo = 0.9
+//! phase = "isotropic"
+//! sampling = 1
+//! estimators = ["delta-tracking", "source-driven"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::f64::consts::PI;
 use std::slice;

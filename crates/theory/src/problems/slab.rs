@@ -54,6 +54,20 @@
 //! Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*, ACM Transactions on Graphics 38 (2019),
 //! section 5; albedos: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.
+//!
+//! ```toml
+//! title = "An example of slab"
+//!
+//! [problem.slab]
+//! medium = 1
+//! span = [0, 2]
+//! albedo = 0.8
+//! phase = "isotropic"
+//! incidence.collimated.cosine = 0.6
+//! sampling = 1.6
+//! estimators = ["analog", "terminating", "weighted"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::slice;
 

@@ -30,6 +30,18 @@
 //! Sources: L. Szirmay-Kalos et al., *Unbiased Light Transport Estimators for Inhomogeneous Participating Media*,
 //! Computer Graphics Forum 36 (2017); B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of
 //! Light Transport*, ACM Transactions on Graphics 38 (2019), sections 5.1 and 6.
+//!
+//! ```toml
+//! title = "An example of transmittance"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.6
+//! control = 0.4
+//! estimators = ["woodcock", "ratio", "residual-ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use std::slice;
 

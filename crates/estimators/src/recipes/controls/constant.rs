@@ -5,6 +5,18 @@
 //! | `value` | σ_c, any finite number | 1/length |
 //!
 //! Above σ_t the residual is negative: negative extinction, a first-class case.
+//!
+//! ```toml
+//! title = "An example of constant"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! control.constant.value = 0.4
+//! estimators = ["residual-ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};

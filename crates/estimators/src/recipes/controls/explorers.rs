@@ -10,6 +10,18 @@
 //! Between the points σ_t may lie above or below the control: the residual has both signs.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4, Figure 5.
+//!
+//! ```toml
+//! title = "An example of explorers"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 0.5
+//! control.explorers.points = 5
+//! estimators = ["double"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};

@@ -6,6 +6,18 @@
 //! ```
 //!
 //! Its optical depth is as exact as when it is the medium. It may exceed σ_t anywhere.
+//!
+//! ```toml
+//! title = "An example of field"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 0.5
+//! control.field.medium.exponential = { extinction = 1.5, rate = 0.7 }
+//! estimators = ["double"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};

@@ -7,6 +7,18 @@
 //! It takes no settings. It needs τ: the exact answer is known where this control is.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, *Optimal control variate*.
+//!
+//! ```toml
+//! title = "An example of mean"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! control.mean = {}
+//! estimators = ["double"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::Knowledge;

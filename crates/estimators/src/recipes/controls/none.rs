@@ -1,6 +1,18 @@
 //! No control: σ_c = 0.
 //!
 //! It takes no settings. Useful to switch off a control that the case gives to all estimators.
+//!
+//! ```toml
+//! title = "An example of none"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling = 1.2
+//! control.none = {}
+//! estimators = ["residual-ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};

@@ -5,6 +5,17 @@
 //! | `value` | σ̂ > 0 | 1/length |
 //!
 //! Free flight: `s = −ln(u)/σ̂`.
+//!
+//! ```toml
+//! title = "An example of constant"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling.constant.value = 1.2
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};

@@ -12,6 +12,17 @@
 //!
 //! Source: Y. Yue et al., *Unbiased, adaptive stochastic sampling for rendering inhomogeneous
 //! participating media*, ACM Transactions on Graphics 29 (2010).
+//!
+//! ```toml
+//! title = "An example of local-majorants"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling.local-majorants.segments = 10
+//! estimators = ["woodcock"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::{Recipe, along_ray_only};
 use crate::Knowledge;

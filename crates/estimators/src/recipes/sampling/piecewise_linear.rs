@@ -7,6 +7,17 @@
 //!
 //! Outside the knots the first and the last value go on. Free flight inverts each quadratic exactly:
 //! `s = 2u/(y₀ + √(y₀² + 2ku))`.
+//!
+//! ```toml
+//! title = "An example of piecewise-linear"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling.piecewise-linear = { knots = [0, 1.5, 5], values = [1.7, 0.6, 0.1] }
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};

@@ -13,6 +13,17 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3 ("we set it to the maximum obtained during casting
 //! the last few neighboring rays").
+//!
+//! ```toml
+//! title = "An example of pilot"
+//!
+//! [problem.transmittance]
+//! medium.exponential = { extinction = 1.6, rate = 0.8 }
+//! span = [0, 5]
+//! sampling.pilot.rays = 100
+//! estimators = ["ratio"]
+//! ```
+#![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
 use super::Recipe;
 use crate::recipes::{FromSettings, Refusal, Site};
