@@ -14,7 +14,7 @@ use crate::case::Ready;
 use crate::draw::block::{DrawnExperiment, Draws};
 use crate::plan::{Plan, Planned};
 use crate::record::{Finding, Verdict};
-use checks::check::{Context, Look, Total};
+use checks::check::{Context, Found, Look, Total};
 use checks::{Inspected, Question};
 use gate::CheckId;
 use gate::deviation::Deviation;
@@ -59,29 +59,18 @@ pub fn run<'d>(plan: &Plan, draws: &'d Draws) -> Vec<Judged<'d>> {
     judged
 }
 
-/// Returns a finding without a result.
-fn blank(check: CheckId, what: &str, channel: String) -> Finding {
-    Finding {
-        check,
-        what: what.to_owned(),
-        expects_bias: false,
-        channel,
-        z: None,
-        p: None,
-        gate: None,
-        path: Vec::new(),
-        block: None,
-        verdict: Verdict::Inconclusive,
-        reason: None,
-    }
-}
-
 /// Returns the findings about an experiment; p-values of distributions are still to be judged together.
 fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
     let DrawnExperiment { planned, drawn, .. } = of;
     if drawn.draws == 0 {
-        let blank = blank(CheckId::Mean, "the mean", String::new());
-        return vec![Finding { reason: Some(Reason::NothingDrawn), ..blank }];
+        return vec![Finding {
+            check: CheckId::Mean,
+            what: "the mean".to_owned(),
+            expects_bias: false,
+            channel: String::new(),
+            z: None,
+            found: Found::new(Verdict::Inconclusive, Some(Reason::NothingDrawn)),
+        }];
     }
     let Ok(ready) = &planned.outcome else { return Vec::new() };
     let both = planned.questions.iter().zip(&drawn.totals);
@@ -128,16 +117,13 @@ fn finding(
             },
         },
     );
-    let channel = channel.map_or(String::new(), |channel| channel.name.clone());
     Finding {
+        check: question.check,
+        what: question.what.clone(),
         expects_bias: question.expects_bias,
-        p: found.p,
-        gate: found.gate,
-        path: thinned(&found.path),
-        block: found.block,
-        verdict: found.verdict,
-        reason: found.reason,
-        ..blank(question.check, &question.what, channel)
+        channel: channel.map_or(String::new(), |channel| channel.name.clone()),
+        z: None,
+        found: Found { path: thinned(&found.path), ..found },
     }
 }
 
@@ -221,11 +207,11 @@ const LOOKS: usize = 64;
 
 /// Returns number of draws and ln E at the looks of a record: the first, the last, and an even choice between them. An
 /// infinite ln E becomes the largest number.
-fn thinned(path: &[(u64, f64)]) -> Vec<[f64; 2]> {
+fn thinned(path: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let last = path.len().saturating_sub(1);
     let few = path.len().min(LOOKS);
     let kept = (0..few).map(|i| path[i * last / (few - 1).max(1)]);
-    kept.map(|(draws, ln_e)| [draws as f64, rounded(ln_e)]).collect()
+    kept.map(|[draws, ln_e]| [draws, rounded(ln_e)]).collect()
 }
 
 /// Rounds to steps of 0.001; infinity becomes the largest number.
@@ -240,12 +226,12 @@ mod tests {
     #[test]
     fn a_path_keeps_its_ends_and_its_order() {
         for looks in [0, 1, 2, 63, 64, 65, 200] {
-            let path: Vec<(u64, f64)> = (0..looks).map(|i| (i * i, i as f64 / 8.0)).collect();
+            let path: Vec<[f64; 2]> =
+                (0..looks).map(|i| [f64::from(i * i), f64::from(i) / 8.0]).collect();
             let kept = thinned(&path);
             assert_eq!(kept.len(), path.len().min(LOOKS));
             assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "{kept:?}");
-            let last = path.last().map(|&(draws, ln_e)| [draws as f64, ln_e]);
-            assert_eq!(kept.last().copied(), last);
+            assert_eq!(kept.last(), path.last());
             assert_eq!(kept.is_empty(), path.is_empty());
         }
     }

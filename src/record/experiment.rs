@@ -1,14 +1,16 @@
 //! Results of an experiment: its identity, its channels, and the findings of the checks.
 
+use std::ops::{Deref, DerefMut};
+
+use checks::check::Found;
 use estimators::{Knowledge, Refusal};
 use gate::CheckId;
-use gate::session::Reason;
 use numeric::Grade;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::ExperimentId;
 use crate::plan::levels::Foreseen;
-use crate::record::{Best, Course, GateFinding, Verdict};
+use crate::record::{Best, Course, Verdict};
 
 /// Results of one experiment: one estimator at one point of the sweep.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -230,21 +232,23 @@ pub struct Finding {
     pub channel: String,
     /// The statistic, in standard deviations, if the check has one.
     pub z: Option<f64>,
-    /// The p-value, for tests of a whole distribution.
-    pub p: Option<f64>,
-    /// Numbers of the gate, for scalars.
-    pub gate: Option<GateFinding>,
-    /// Pairs of draws and ln E at the gate's looks, ascending: the last is the decision's. Of more than 64 looks an
-    /// even choice, ln E in steps of 0.001.
-    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "gate::extended")]
-    pub path: Vec<[f64; 2]>,
-    /// Block after which it was decided, or the block with the first violation.
-    pub block: Option<u64>,
-    /// The verdict of the check.
-    pub verdict: Verdict,
-    /// Reason of the verdict; `None` for a plain pass.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reason: Option<Reason>,
+    /// The result of the check; a finding dereferences to it.
+    #[serde(flatten)]
+    pub found: Found,
+}
+
+impl Deref for Finding {
+    type Target = Found;
+
+    fn deref(&self) -> &Found {
+        &self.found
+    }
+}
+
+impl DerefMut for Finding {
+    fn deref_mut(&mut self) -> &mut Found {
+        &mut self.found
+    }
 }
 
 impl Finding {

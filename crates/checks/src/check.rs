@@ -163,20 +163,23 @@ pub struct Context<'a> {
 }
 
 /// Result of a check.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Found {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// The reason; `None` for a plain pass.
-    pub reason: Option<Reason>,
     /// p-value, which is judged together with all p-values of the run.
     pub p: Option<f64>,
     /// Numbers of the gate.
     pub gate: Option<GateFinding>,
-    /// Number of draws and ln E at the looks of the gate.
-    pub path: Vec<(u64, f64)>,
+    /// Number of draws and ln E at the looks of the gate, ascending: the last is the decision's. In a record, of more than
+    /// 64 looks an even choice, ln E in steps of 0.001.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "gate::extended")]
+    pub path: Vec<[f64; 2]>,
     /// Block after which it was decided, or the block with the draw that fails.
     pub block: Option<u64>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The reason; `None` for a plain pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<Reason>,
 }
 
 impl Found {

@@ -88,7 +88,7 @@ impl Check for Scalar {
         Found {
             gate: Some(self.planned.finding(&trail, levels)),
             block: Some(trail.draws.saturating_sub(1) / BLOCK),
-            path: trail.path,
+            path: trail.path.iter().map(|&(draws, ln_e)| [draws as f64, ln_e]).collect(),
             ..Found::new(verdict, reason)
         }
     }

@@ -1,6 +1,7 @@
 //! Details of an experiment, which open below it: its numbers, the path of the evidence, its plots, and how to repeat it.
 
 use crate::report::html::template::{Markup, html};
+use checks::check::Found;
 use gate::CheckId;
 
 use super::sparks;
@@ -178,7 +179,7 @@ fn numbers_of(line: &Line) -> Markup {
 
 /// Returns the verdict of a check and its grounds.
 fn says(finding: &Finding) -> Markup {
-    let Finding { verdict, gate, .. } = finding;
+    let Found { verdict, gate, .. } = &finding.found;
     let number = |value| words::number(Some(value), 4);
     html! {
         td class={ "verdict " (verdict.word()) } { (words::verdict(Some(*verdict))) }
