@@ -6,7 +6,7 @@
 //! all else                 the inner walk's
 //! ```
 //!
-//! A change without a bug calls the inner steps alone: with it the walk is the control.
+//! [`Renumbered`] random numbers change a decision inside a step. A change without a bug calls the inner steps alone: with it the walk is the control.
 
 use estimators::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::Batches;
@@ -183,5 +183,53 @@ impl<W: Walk, C: Change<W>> Walk for Altered<W, C> {
     #[inline(always)]
     fn defect<L: Lane>(&self, state: &Self::State<L>, zero: L) -> L {
         self.walk.defect(state, zero)
+    }
+}
+
+/// Random numbers of which some uniform ones are changed, given the numbers of them before.
+pub struct Renumbered<'a, R, F> {
+    random: &'a mut R,
+    count: usize,
+    change: F,
+}
+
+impl<'a, R, F> Renumbered<'a, R, F> {
+    /// Changes the numbers of a generator.
+    #[inline(always)]
+    pub fn new(random: &'a mut R, change: F) -> Self {
+        Self { random, count: 0, change }
+    }
+
+    #[inline(always)]
+    fn changed<L>(&mut self, number: L) -> L
+    where
+        F: Fn(usize, L) -> L,
+    {
+        self.count += 1;
+        (self.change)(self.count - 1, number)
+    }
+}
+
+impl<L: Lane, R: Random<L>, F: Fn(usize, L) -> L> Random<L> for Renumbered<'_, R, F> {
+    #[inline(always)]
+    fn uniform(&mut self) -> L {
+        let number = self.random.uniform();
+        self.changed(number)
+    }
+
+    #[inline(always)]
+    fn ln_uniform(&mut self) -> L {
+        self.random.ln_uniform()
+    }
+
+    #[inline(always)]
+    fn uniform_where(&mut self, which: L::Mask) -> L {
+        let number = self.random.uniform_where(which);
+        self.changed(number)
+    }
+
+    #[inline(always)]
+    fn ln_uniform_where(&mut self, which: L::Mask) -> L {
+        self.random.ln_uniform_where(which)
     }
 }

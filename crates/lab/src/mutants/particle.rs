@@ -11,16 +11,20 @@
 //! lambertian       light from all sides: every distribution of starts but Lambert's changes lengths and counts
 //! ```
 
+use super::altered::{Altered, Change, Renumbered};
 use super::{Line, Mutant, On, family, filled, on, one_by_one};
+use estimators::Setup;
 use estimators::rod::walk::{self as rod, InRod, RuleAndRoulette};
 use estimators::slab::walk::{self as slab, InSlab};
-use estimators::space::{self, Particle, Splitting, Walked};
-use estimators::walks;
+use estimators::space::walk::{InSpace, State};
+use estimators::space::{Particle, Splitting, Tally, Walked, draws};
+use estimators::walks::{self, Route, TentativeCollision, Walk};
 use gate::CheckId;
 use media::phase::Phase;
-use numeric::Lane;
+use media::sampling::BothWays;
 use numeric::geometry::Point;
 use numeric::rng::Random;
+use numeric::{Kept, Lane, Mask};
 use theory::ParticleRule;
 use theory::ParticleRule::{Adaptive, Analog, NonTerminating, Terminating, Weighted};
 use theory::collisions::particle::EventProbabilities;
@@ -172,8 +176,17 @@ pub fn under_light() -> Vec<Mutant<Lambertian>> {
 
 fn in_space<P: Walked>(lines: &[Line<Particle, Bug>]) -> Vec<Mutant<P>> {
     family(lines, &Bug::None, |&right, &bug| {
-        let steps = Wrong(bug.particle(right), bug);
-        one_by_one(move |setup, _, random| space::draw::<P, false>(steps, &steps.0, setup, random))
+        let particle = bug.particle(right);
+        one_by_one(move |setup: &Setup<P>, _, random| {
+            let world = (setup.problem.scene(), &*setup.fields);
+            match P::tally(setup, &particle) {
+                Ok(tally) => {
+                    let walk = InSpace::new(&tally, particle, world, &[]);
+                    draws::draw(&Altered { walk, change: bug }, random)
+                }
+                Err(draw) => draw,
+            }
+        })
     })
 }
 
@@ -281,44 +294,66 @@ impl slab::WalkEvents for Wrong<ParticleRule> {
     }
 }
 
-impl space::WalkEvents for Wrong<Particle> {
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        self.probabilities(space::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
+impl<T: Tally> Change<InSpace<'_, T>> for Bug {
+    fn numbers<L: Lane>(
+        &self,
+        walk: &InSpace<T>,
+        state: &mut State<L, T::Found<L>>,
+        random: &mut impl Random<L>,
+    ) -> [L; 2] {
+        let (direction, turns) = (&mut state.path.flights.direction, state.scattered);
+        match self {
+            Self::AboutZ => direction.set_where(turns, Point([0.0, 0.0, 1.0]).each(direction[0])),
+            Self::Backward => direction.set_where(turns, direction.map(|along| -along)),
+            // The third number of a walk makes its cosine √(1 − u), which is 1 − v for u = 1 − (1 − v)².
+            Self::EvenLight if state.ended.any() => {
+                let even = |n, v: L| if n == 2 { v * (-v + 2.0) } else { v };
+                return walk.numbers(state, &mut Renumbered::new(random, even));
+            }
+            _ => {}
+        }
+        walk.numbers(state, random)
     }
 
-    fn survive<L: Lane>(
+    fn fly<L: Lane>(
         &self,
-        goes_on: L::Mask,
-        weight: &mut L,
+        walk: &InSpace<T>,
+        state: &mut State<L, T::Found<L>>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        match self {
+            Self::StaleMajorant => walk.advance_through(state, depth, |_, begun| begun),
+            _ => walk.fly(state, route, depth),
+        }
+    }
+
+    fn collide<L: Lane>(
+        &self,
+        walk: &InSpace<T>,
+        state: &mut State<L, T::Found<L>>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let before = *weight;
-        let survives = space::WalkEvents::survive(&self.0, goes_on, weight, random);
-        *weight = self.played(before, *weight);
-        survives
-    }
-
-    fn through<L: Lane>(&self, here: L, begun: L) -> L {
-        if self.1 == Bug::StaleMajorant { begun } else { here }
-    }
-
-    fn number<L: Lane>(&self, which: L::Mask, depth: L, random: &mut impl Random<L>) -> L {
-        if self.1 == Bug::NumberTwice {
-            return Lane::exp(-depth);
+        let weight = state.path.weight;
+        if *self == Self::NumberTwice {
+            let of_flight = |_, _| Lane::exp(-met.number);
+            return walk.collide(state, route, met, &mut Renumbered::new(random, of_flight));
         }
-        space::WalkEvents::number(&self.0, which, depth, random)
-    }
-
-    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        self.deflection(space::WalkEvents::deflection(&self.0, phase, number))
-    }
-
-    fn axis<L: Lane>(&self, direction: [L; 3]) -> [L; 3] {
-        let up = Point([0.0, 0.0, 1.0]).each(direction[0]);
-        if self.1 == Bug::AboutZ { up } else { direction }
-    }
-
-    fn first_cosine<L: Lane>(&self, right: L, number: L) -> L {
-        if self.1 == Bug::EvenLight { number.one_minus() } else { right }
+        let goes_on = walk.collide(state, route, met, random);
+        let albedo = weight.each(walk.scene.albedo.even().unwrap_or(f64::NAN));
+        match self {
+            Self::AlbedoTwice => state.path.weight.scale_where(state.scattered, albedo),
+            Self::Uncompensated => {
+                let ratio = met.in_space[0] / state.sampling;
+                let EventProbabilities { scatter_weight, transmit_weight, .. } =
+                    walk.particle.rule.probabilities(ratio, albedo);
+                let factor = L::select(state.scattered, scatter_weight, transmit_weight);
+                state.path.weight.set_where(goes_on, weight * factor);
+            }
+            _ => {}
+        }
+        goes_on
     }
 }
