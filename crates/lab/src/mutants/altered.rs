@@ -1,9 +1,9 @@
 //! A walk around a walk: the steps of the inner one, with work before and after them.
 //!
 //! ```text
-//! numbers, fly, collide    a change may alter the state, the collision and the random numbers before the inner step, and
-//!                          the state and the result after it
-//! all else                 the inner walk's
+//! begin, numbers, fly, collide  a change may alter the state, the collision and the random numbers before the inner step,
+//!                               and the state and the result after it
+//! all else                      the inner walk's
 //! ```
 //!
 //! [`Renumbered`] random numbers change a decision inside a step. A change without a bug calls the inner steps alone: with it the walk is the control.
@@ -17,6 +17,18 @@ use numeric::rng::Random;
 
 /// Changes of the steps of a walk.
 pub trait Change<W: Walk>: Copy {
+    /// [`Walk::begin`], changed.
+    #[inline(always)]
+    fn begin<L: Lane>(
+        &self,
+        walk: &W,
+        one: L,
+        which: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> W::State<L> {
+        walk.begin(one, which, random)
+    }
+
     /// [`Walk::numbers`], changed.
     #[inline(always)]
     fn numbers<L: Lane>(
@@ -83,7 +95,7 @@ impl<W: Walk, C: Change<W>> Walk for Altered<W, C> {
         which: L::Mask,
         random: &mut impl Random<L>,
     ) -> Self::State<L> {
-        self.walk.begin(one, which, random)
+        self.change.begin(&self.walk, one, which, random)
     }
 
     #[inline(always)]
