@@ -10,7 +10,7 @@ use numeric::rng::{Address, LANES, PACKS};
 use theory::ParticleRule;
 use theory::problems::Rod;
 use theory::problems::rod::channels;
-use trueflight_estimators::rod::walk::{InRod, Particle, RuleAndRoulette, WalkEvents};
+use trueflight_estimators::rod::walk::{InRod, Particle, RuleAndRoulette};
 use trueflight_estimators::sphere::connect::cone;
 use trueflight_estimators::transmittance::scoring::{Score, Share};
 use trueflight_estimators::transmittance::{
@@ -18,7 +18,7 @@ use trueflight_estimators::transmittance::{
 };
 use trueflight_estimators::walks::Walk;
 use trueflight_estimators::walks::slots::Slots;
-use trueflight_estimators::walks::steps::turned;
+use trueflight_estimators::walks::steps::{roulette, turned};
 
 #[test]
 fn every_draw_has_one_slot_and_lanes_take_turns() {
@@ -125,10 +125,9 @@ fn a_particle_is_seen_at_its_end_and_by_its_order() {
 
 #[test]
 fn what_roulette_takes_it_gives_back() {
-    let steps = RuleAndRoulette { rule: ParticleRule::NonTerminating, roulette: Some(0.4) };
     let mut rng = Address { seed: 1, experiment: 2, block: 3, lane: 4 }.stream();
     let mut kept =
-        |mut weight: f64| steps.survive::<f64>(true, &mut weight, &mut rng).then_some(weight);
+        |mut weight: f64| roulette::<f64>(Some(0.4), true, &mut weight, &mut rng).then_some(weight);
     assert_eq!(kept(0.4), Some(0.4));
     assert_eq!(kept(0.0), None);
     for weight in [0.1, -0.3] {

@@ -6,8 +6,9 @@
 
 use fearless_simd::Level;
 
+use super::Method;
 use super::subpath::{Field, Tracker};
-use super::walk::{WalkEvents, draw_each};
+use super::walk::draw_each;
 use crate::setup::Setup;
 use crate::walks::slots::{Numbers, leave};
 use crate::{DrawBuffer, Request};
@@ -23,7 +24,7 @@ use theory::problems::bidirectional_rod::MAX_CHANNELS;
 /// or σ̂ has several values.
 pub fn packets<'r>(
     level: Level,
-    steps: &(impl WalkEvents + Copy),
+    method: Method,
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
     request: Request<'r>,
@@ -31,23 +32,23 @@ pub fn packets<'r>(
     if setup.fields.sampling.with_gaps().is_none() {
         return Some(request);
     }
-    let task = Draws { steps: *steps, setup, medium, request };
+    let task = Draws { method, setup, medium, request };
     pack::on(level, task).err().map(|task| task.request)
 }
 
-struct Draws<'a, 'r, P> {
-    steps: P,
+struct Draws<'a, 'r> {
+    method: Method,
     setup: &'a Setup<BidirectionalRod>,
     medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
+impl Task for Draws<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Hardware>(self, simd: S) {
-        let Self { steps, setup, medium, request: Request { streams, count, buffer } } = self;
+        let Self { method, setup, medium, request: Request { streams, count, buffer } } = self;
         let Some(sampling) = setup.fields.sampling.with_gaps() else { return };
         buffer.make_room(count);
         buffer.defects.fill(0.0);
@@ -62,7 +63,7 @@ impl<P: WalkEvents + Copy> Task for Draws<'_, '_, P> {
             let draws = Batch { base, turn: streams.turn };
             let lives = draws.lives(count);
             let lives = Pair(simd.mask(lives & 0xff), simd.mask(lives >> WIDTH));
-            let channels = draw_each(&steps, &mut tracker, lives, &mut random);
+            let channels = draw_each(method, &mut tracker, lives, &mut random);
             for (row, value) in rows.iter_mut().zip(&tracker.values[..channels]) {
                 value.store(row);
             }

@@ -8,7 +8,7 @@ pub mod subpath;
 pub mod technique;
 pub mod walk;
 
-use self::walk::WalkEvents;
+use self::path::Path;
 use crate::setup::heuristic;
 use crate::{
     Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits, estimators, walks,
@@ -19,6 +19,7 @@ use ::theory::problems::BidirectionalRod;
 use ::theory::problems::bidirectional_rod::Sensor;
 use ::theory::rod::bidirectional::{self, Combination, Connection, Rules, Scene};
 use media::catalogue::Settings;
+use numeric::Lane;
 use numeric::digits::rounded;
 
 /// Settings of a page.
@@ -32,20 +33,11 @@ pub struct Method {
     pub is_shared: bool,
 }
 
-impl WalkEvents for Method {
+impl Method {
+    /// Values of paths; `T̂` of their connections is positive.
     #[inline(always)]
-    fn combination(&self) -> Combination {
-        self.combination
-    }
-
-    #[inline(always)]
-    fn is_tracked(&self) -> bool {
-        self.is_tracked
-    }
-
-    #[inline(always)]
-    fn is_shared(&self) -> bool {
-        self.is_shared
+    pub fn value<L: Lane>(self, path: &Path<L>) -> L {
+        path.weight(self.combination) * path.quotient(path.light)
     }
 }
 
@@ -168,14 +160,14 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
 }
 
 /// Makes the draws of a request: compiled once for all pages.
-fn fill(steps: Method, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {
+fn fill(method: Method, kernel: Kernel, setup: &Setup<BidirectionalRod>, request: Request) {
     walks::by(
         kernel,
         setup,
         request,
-        |level, medium, request| batch::packets(level, &steps, setup, medium, request),
+        |level, medium, request| batch::packets(level, method, setup, medium, request),
         #[inline(always)]
-        |medium, random| walk::draw(&steps, setup, medium, random),
+        |medium, random| walk::draw(method, setup, medium, random),
     );
 }
 

@@ -10,6 +10,7 @@
 //! is absorbed, leaves, or has been scattered as often as the highest order. All techniques of all orders take its
 //! first vertices.
 
+use super::Method;
 use super::path::Path;
 use super::subpath::{Field, Side, Subpath, Tracker};
 use crate::{Draw, Setup};
@@ -23,51 +24,10 @@ use theory::problems::bidirectional_rod::{MAX_CHANNELS, Sensor, Values};
 use theory::problems::{BidirectionalRod, Problem};
 use theory::rod::bidirectional::Combination;
 
-/// Events of a walk, each of which a known bug may replace.
-pub trait WalkEvents {
-    /// Techniques, and their weights.
-    fn combination(&self) -> Combination;
-
-    /// True if connections are tracked.
-    fn is_tracked(&self) -> bool;
-
-    /// True if all techniques share their subpaths.
-    fn is_shared(&self) -> bool;
-
-    /// Prepares the generator for the next path: it continues its stream.
-    #[inline(always)]
-    fn begin<R: Copy>(&self, random: &mut R, beginning: &R) {
-        let _ = (random, beginning);
-    }
-
-    /// Index of the vertex at which the connection of a path begins: the last vertex from the light.
-    #[inline(always)]
-    fn joined<L: Lane>(&self, path: &Path<L>) -> usize {
-        path.light - 1
-    }
-
-    /// Values of paths; `T̂` of their connections is positive.
-    #[inline(always)]
-    fn weight<L: Lane>(&self, path: &Path<L>) -> L {
-        path.weight(self.combination()) * path.quotient(path.light)
-    }
-
-    /// Sum of the values of all techniques.
-    #[inline(always)]
-    fn together<L: Lane>(&self, each: &[L]) -> L {
-        let (first, rest) = (each[0], &each[1..]);
-        let mut sum = first;
-        for &weight in rest {
-            sum = sum + weight;
-        }
-        sum
-    }
-}
-
 /// Makes one draw.
 #[inline(always)]
 pub fn draw(
-    steps: &impl WalkEvents,
+    method: Method,
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
     random: &mut Stream,
@@ -78,10 +38,10 @@ pub fn draw(
             let alone = Alone(medium);
             if let Some(even) = setup.fields.sampling.with_gaps() {
                 let begin = FlightWithGaps::new(0.0, even);
-                through(steps, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
+                through(method, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
             } else {
                 let begin = FlightOverPieces::new(0.0, &setup.fields.sampling);
-                through(steps, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
+                through(method, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
             }
         },
     )
@@ -90,11 +50,11 @@ pub fn draw(
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
 fn through<L: ScalarLane, C: BothWays<L>>(
-    steps: &impl WalkEvents,
+    method: Method,
     mut tracker: Tracker<'_, L, C, impl Field<L>>,
     random: &mut Stream,
 ) -> Draw<Values> {
-    let count = draw_each(steps, &mut tracker, true, random);
+    let count = draw_each(method, &mut tracker, true, random);
     let mut values = Values { at: [0.0; MAX_CHANNELS], count };
     for (value, drawn) in values.at[..count].iter_mut().zip(tracker.values) {
         *value = drawn.double();
@@ -103,7 +63,7 @@ fn through<L: ScalarLane, C: BothWays<L>>(
 }
 
 /// Lookups and exponentials of one lane.
-struct Alone<'a>(&'a Lookups<'a>);
+pub struct Alone<'a>(pub &'a Lookups<'a>);
 
 impl<L: Lane> Field<L> for Alone<'_> {
     #[inline(always)]
@@ -119,38 +79,36 @@ impl<L: Lane> Field<L> for Alone<'_> {
 
 /// Makes a draw of each lane in `which`: a path of each technique. Returns the number of channels.
 #[inline(always)]
-pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
-    steps: &impl WalkEvents,
+pub fn draw_each<L: Lane, C: BothWays<L>>(
+    method: Method,
     tracker: &mut Tracker<'_, L, C, impl Field<L>>,
     which: L::Mask,
-    random: &mut R,
+    random: &mut impl Random<L>,
 ) -> usize {
-    let (problem, beginning) = (&*tracker.setup.problem, *random);
+    let problem = &*tracker.setup.problem;
     let zero = tracker.lookups.each(0.0);
     (tracker.lookups, tracker.values[0]) = (zero, zero);
     let mut count = 0;
-    if steps.is_shared() {
+    if method.is_shared {
         let whole = [*problem.orders.end(), 1];
         tracker.walk(Side::Light, whole, which, random);
         tracker.walk(Side::Camera, whole, which, random);
     }
     for order in problem.orders.clone() {
-        for s in steps.combination().techniques(order) {
-            steps.begin(random, &beginning);
-            if !steps.is_shared() {
-                walk_for(tracker, [order, s], which, random);
-            }
-            (tracker.path.order, tracker.path.light) = (order, s);
-            let valid = join(tracker, steps, which, random);
-            let mut weight = zero;
+        for s in method.combination.techniques(order) {
+            let valid = make_paths(method, tracker, [order, s], which, random);
+            let mut value = zero;
             if valid.any() {
-                weight = L::select(valid, steps.weight(&tracker.path), zero);
+                value = L::select(valid, method.value(&tracker.path), zero);
             }
-            tracker.values[count] = weight;
+            tracker.values[count] = value;
             count += 1;
         }
     }
-    let sum = steps.together(&tracker.values[..count.max(1)]);
+    let mut sum = tracker.values[0];
+    for &value in &tracker.values[1..count.max(1)] {
+        sum = sum + value;
+    }
     if !problem.has_shares {
         count = 0;
     }
@@ -159,6 +117,22 @@ pub fn draw_each<L: Lane, C: BothWays<L>, R: Random<L> + Copy>(
         count += 1;
     }
     count
+}
+
+/// Makes a path of each lane in `which` by a technique `[r, s]`, in the tracker. Returns the lanes that have one.
+#[inline(always)]
+pub fn make_paths<L: Lane, C: BothWays<L>>(
+    method: Method,
+    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    [order, s]: [usize; 2],
+    which: L::Mask,
+    random: &mut impl Random<L>,
+) -> L::Mask {
+    if !method.is_shared {
+        walk_for(tracker, [order, s], which, random);
+    }
+    (tracker.path.order, tracker.path.light) = (order, s);
+    join(tracker, method, which, random)
 }
 
 /// Makes the subpaths of a technique `[r, s]`. Lanes with too short a subpath from the light make none from the
@@ -185,7 +159,7 @@ fn walk_for<L: Lane, C: BothWays<L>>(
 #[inline(always)]
 fn join<L: Lane, C: BothWays<L>>(
     tracker: &mut Tracker<'_, L, C, impl Field<L>>,
-    steps: &impl WalkEvents,
+    method: Method,
     which: L::Mask,
     random: &mut impl Random<L>,
 ) -> L::Mask {
@@ -208,13 +182,13 @@ fn join<L: Lane, C: BothWays<L>>(
         return valid;
     }
     gather(tracker.setup, [light, camera], path);
-    if !is_hit && steps.is_tracked() {
+    if !is_hit && method.is_tracked {
         let (from, to) = (light.places[from_light], path.at[s]);
         let flying = (valid, path.is_forward[s - 1]);
         tracker.path.transmittance[s - 1] = tracker.connect(from, to, flying, random);
     }
-    if !steps.is_tracked() {
-        attenuate(problem, steps, (&mut tracker.path, &tracker.field), valid);
+    if !method.is_tracked {
+        attenuate(problem, method, (&mut tracker.path, &tracker.field), valid);
     }
     if !is_hit {
         let found = tracker.path.transmittance[s - 1];
@@ -272,19 +246,19 @@ fn gather<L: Lane, P>(
 #[inline(always)]
 fn attenuate<L: Lane>(
     problem: &BidirectionalRod,
-    steps: &impl WalkEvents,
+    method: Method,
     (path, field): (&mut Path<L>, &impl Field<L>),
     which: L::Mask,
 ) {
     let is_connected = path.light >= 1 && path.light <= path.order + 1;
-    if matches!(steps.combination(), Combination::Full(_)) {
+    if matches!(method.combination, Combination::Full(_)) {
         for j in (0..=path.order).filter(|j| !is_connected || j + 1 != path.light) {
             let ends = [path.at[j], path.at[j + 1]];
             path.transmittance[j] = field.exp(minus_depths(problem, ends, which));
         }
     }
     if is_connected {
-        let ends = [path.at[steps.joined(path)], path.at[path.light]];
+        let ends = [path.at[path.light - 1], path.at[path.light]];
         path.transmittance[path.light - 1] = field.exp(minus_depths(problem, ends, which));
     }
 }

@@ -15,26 +15,29 @@
 //! ρ is `p_uni/p_nee` of the segment in flight, see [`theory::light::techniques`]; every real scattering
 //! resets it. Every flight takes two random numbers, a scattering one more.
 
-use super::shadow::{MediumToLight, ShadowRays, WalkEvents};
+use super::shadow::{MediumToLight, ShadowRays};
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
-use media::Piecewise;
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::light::Shadow;
+use theory::light::{Shadow, Techniques};
 use theory::problems::{LitRod, Problem, Rod};
 
 kept! {
     /// A walk in flight, or paused for its shadow ray.
     pub struct Path<L> {
-        is_forward: L::Mask,
-        unscattered: L::Mask,
+        /// Lanes that fly forward.
+        pub is_forward: L::Mask,
+        /// Lanes that were never scattered.
+        pub unscattered: L::Mask,
         /// ρ.
-        ratio: L,
-        score: L,
-        shadow: ShadowRays<L>,
+        pub ratio: L,
+        /// The score so far.
+        pub score: L,
+        /// The shadow ray.
+        pub shadow: ShadowRays<L>,
     }
 }
 
@@ -61,32 +64,33 @@ impl<L: Lane> Scatterers<L> for &Rod {
 
 /// The walk to an emitter at the end of a rod.
 #[derive(Clone, Copy)]
-pub struct ToEmitter<'a, S> {
-    rod: &'a Rod,
+pub struct ToEmitter<'a> {
+    /// The rod.
+    pub rod: &'a Rod,
     before: MediumToLight<'a>,
-    steps: S,
+    techniques: Techniques,
 }
 
-impl<'a, S: WalkEvents> ToEmitter<'a, S> {
-    /// The walk through a rod and its σ̂ to the emitter at `end`.
+impl<'a> ToEmitter<'a> {
+    /// The walk through a rod to the emitter at `end`.
     #[inline(always)]
-    pub fn new(rod: &'a Rod, sampling: &'a Piecewise, end: f64, steps: S) -> Self {
-        Self { rod, before: MediumToLight { medium: rod.medium(), sampling, end }, steps }
+    pub fn new(rod: &'a Rod, end: f64, techniques: Techniques) -> Self {
+        Self { rod, before: MediumToLight { medium: rod.medium(), end }, techniques }
     }
 
     /// The walk on a setup.
     #[inline(always)]
-    pub fn of(setup: &'a Setup<LitRod>, steps: S) -> Self {
-        Self::new(&setup.problem.rod, &setup.fields.sampling, setup.fields.mesh.support().to, steps)
+    pub fn of(setup: &'a Setup<LitRod>, techniques: Techniques) -> Self {
+        Self::new(&setup.problem.rod, setup.fields.mesh.support().to, techniques)
     }
 }
 
 /// Makes the draws of a request.
-pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<LitRod>, request: Request) {
-    walks::fill(&ToEmitter::of(setup, steps), kernel, setup, request);
+pub fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<LitRod>, request: Request) {
+    walks::fill(&ToEmitter::of(setup, techniques), kernel, setup, request);
 }
 
-impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
+impl Walk for ToEmitter<'_> {
     type State<L: Lane> = Path<L>;
 
     const PAUSES: bool = true;
@@ -132,7 +136,7 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
     }
 }
 
-impl<S: WalkEvents> ToEmitter<'_, S> {
+impl ToEmitter<'_> {
     /// Handles walks and shadow rays among scatterers, as [`Walk::collide`].
     #[inline(always)]
     pub fn collide_among<L: Lane>(
@@ -146,8 +150,7 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
         let (rays, walks) = (path.shadow.casts, !path.shadow.casts);
         let (mut goes_on, albedo) = (rays, among.albedo(met.t));
         if rays.maybe() {
-            let along = (met.t.each(1.0), albedo);
-            path.shadow.track(&self.steps, &self.before, (route, met), along, &mut path.score);
+            path.shadow.track(self.techniques, route, met, &mut path.score);
         }
         if walks.maybe() {
             goes_on |= self.step(among, path, route, (met, albedo), walks, random);
@@ -169,18 +172,17 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
         let (TentativeCollision { inside, t, number, .. }, real) = (*met, met.ratio());
         let hits = walks & !inside & path.is_forward;
         if hits.maybe() {
-            let unscattered = self.steps.unscattered(t.each(1.0));
-            let weight = L::select(path.unscattered, unscattered, self.steps.hit(path.ratio));
+            let of_hit = self.techniques.of_hit(path.ratio);
+            let weight = L::select(path.unscattered, t.each(1.0), of_hit);
             path.score.add_where(hits, weight);
         }
         let probabilities = ParticleRule::Analog.probabilities(real, albedo);
         let (scattered, null) = probabilities.decide_each(walks & inside, number);
-        if self.steps.techniques().has_nulls() {
-            let after_null = self.steps.after_null(path.ratio, real.one_minus());
-            path.ratio.set_where(null & !path.unscattered, after_null);
+        if self.techniques.has_nulls() {
+            path.ratio.scale_where(null & !path.unscattered, real.one_minus());
         }
         if scattered.maybe() {
-            self.scatter(among, path, route, (t, albedo), scattered, random);
+            self.scatter(among, path, route, t, scattered, random);
         }
         scattered | null
     }
@@ -192,27 +194,26 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
         among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        (t, albedo): (L, L),
+        t: L,
         scattered: L::Mask,
         random: &mut impl Random<L>,
     ) {
         let direction = random.uniform_where(scattered);
         let forward = among.forward(t);
-        let phase = self.steps.phase(forward, path.is_forward, albedo);
-        let techniques = self.steps.techniques();
+        let phase = L::select(path.is_forward, forward, forward.one_minus());
+        let techniques = self.techniques;
         let mut exact = t.each(0.0);
         match techniques.shadow {
             None => {}
             Some(Shadow::Exact) => {
                 exact = self.before.transmittance(t, t.each(1.0), scattered);
-                path.score.add_where(scattered, self.steps.connected(phase, exact));
+                path.score.add_where(scattered, techniques.of_shadow_ray(phase, exact));
             }
             Some(Shadow::Delta | Shadow::Ratio) => {
-                path.shadow.cast_where::<S>(scattered, route, (t, phase));
+                path.shadow.cast_where(scattered, route, phase);
             }
         }
-        let right = techniques.ratio(phase, exact);
-        path.ratio.set_where(scattered, self.steps.after_scattering(path.ratio, right));
+        path.ratio.set_where(scattered, techniques.ratio(phase, exact));
         path.is_forward ^= scattered & forward.at_most(direction);
         path.unscattered &= !scattered;
     }

@@ -42,7 +42,7 @@ impl Lit for LitSlab {
 
     fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<Self>, request: Request) {
         let techniques = lit::possible(techniques, setup.problem.light);
-        walk::fill((techniques, walk::Right), kernel, setup, request);
+        walk::fill(techniques, kernel, setup, request);
     }
 }
 

@@ -15,104 +15,60 @@
 //! Every flight takes two random numbers; a scattering takes one for each direction that is chosen or drawn. A technique
 //! without hits draws none.
 
-use crate::lit_rod::shadow::{MediumToLight, ShadowRays, WalkEvents};
+use crate::lit_rod::shadow::{MediumToLight, ShadowRays};
 use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Kernel, Request, Setup};
-use media::phase::Phase;
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::light::Shadow;
+use theory::light::{Shadow, Techniques};
 use theory::problems::{LitSlab, Problem};
-
-/// Densities of directions; a known bug may replace each of them. The steps along directions are those of rods.
-pub trait Directions: Copy {
-    /// The phase function of a chosen direction.
-    #[inline(always)]
-    fn scattered<L: Lane>(&self, phase: &Phase, cosine: L) -> L {
-        phase.value(cosine)
-    }
-
-    /// `1/p_nee` of a chosen direction, given the right one.
-    #[inline(always)]
-    fn spread<L: Lane>(&self, right: L, cosine: L) -> L {
-        let _ = cosine;
-        right
-    }
-
-    /// `1/p_nee` of a drawn direction, given the right one.
-    #[inline(always)]
-    fn spread_of_hit<L: Lane>(&self, right: L) -> L {
-        right
-    }
-
-    /// Depth of a shadow ray's flight in a unit of optical depth.
-    #[inline(always)]
-    fn slant<L: Lane>(&self, cosine: L) -> L {
-        cosine
-    }
-}
-
-/// The right densities.
-#[derive(Clone, Copy)]
-pub struct Right;
-
-impl Directions for Right {}
 
 kept! {
     /// A walk in flight, or paused for its shadow ray.
     pub struct Path<L> {
         /// Lanes that fly to a hit.
-        seeks: L::Mask,
+        pub seeks: L::Mask,
         /// Lanes with a drawn direction that hits the light.
-        meets: L::Mask,
+        pub meets: L::Mask,
         /// The cosine of the flight.
-        cosine: L,
+        pub cosine: L,
         /// The cosine that was drawn.
-        drawn: L,
+        pub drawn: L,
         /// ρ of the hit.
-        ratio: L,
-        score: L,
-        shadow: ShadowRays<L>,
+        pub ratio: L,
+        /// The score so far.
+        pub score: L,
+        /// The shadow ray.
+        pub shadow: ShadowRays<L>,
     }
 }
 
 /// The walk to a light behind a slab.
 #[derive(Clone, Copy)]
-pub struct ToLight<'a, S, D> {
-    slab: &'a LitSlab,
+pub struct ToLight<'a> {
+    /// The slab and the light.
+    pub slab: &'a LitSlab,
     before: MediumToLight<'a>,
-    steps: S,
-    directions: D,
+    techniques: Techniques,
 }
 
-impl<'a, S: WalkEvents, D: Directions> ToLight<'a, S, D> {
+impl<'a> ToLight<'a> {
     /// The walk on a setup.
     #[inline(always)]
-    pub fn of(setup: &'a Setup<LitSlab>, steps: S, directions: D) -> Self {
-        let (slab, sampling, end) =
-            (&*setup.problem, &setup.fields.sampling, setup.fields.mesh.support().to);
-        Self {
-            slab,
-            before: MediumToLight { medium: slab.medium(), sampling, end },
-            steps,
-            directions,
-        }
+    pub fn of(setup: &'a Setup<LitSlab>, techniques: Techniques) -> Self {
+        let (slab, end) = (&*setup.problem, setup.fields.mesh.support().to);
+        Self { slab, before: MediumToLight { medium: slab.medium(), end }, techniques }
     }
 }
 
 /// Makes the draws of a request.
-pub fn fill(
-    (steps, directions): (impl WalkEvents, impl Directions),
-    kernel: Kernel,
-    setup: &Setup<LitSlab>,
-    request: Request,
-) {
-    walks::fill(&ToLight::of(setup, steps, directions), kernel, setup, request);
+pub fn fill(techniques: Techniques, kernel: Kernel, setup: &Setup<LitSlab>, request: Request) {
+    walks::fill(&ToLight::of(setup, techniques), kernel, setup, request);
 }
 
-impl<S: WalkEvents, D: Directions> Walk for ToLight<'_, S, D> {
+impl Walk for ToLight<'_> {
     type State<L: Lane> = Path<L>;
 
     const PAUSES: bool = true;
@@ -155,15 +111,14 @@ impl<S: WalkEvents, D: Directions> Walk for ToLight<'_, S, D> {
         let (scattered, null) = probabilities.decide_each(inside & !casts & !seeks, number);
         let hits = seeks & !inside;
         if hits.any() {
-            path.score.add_where(hits, self.steps.hit(path.ratio));
+            path.score.add_where(hits, self.techniques.of_hit(path.ratio));
         }
         path.seeks = seeks & inside & !number.below(real);
-        if self.steps.techniques().has_nulls() {
-            path.ratio.set_where(path.seeks, self.steps.after_null(path.ratio, real.one_minus()));
+        if self.techniques.has_nulls() {
+            path.ratio.scale_where(path.seeks, real.one_minus());
         }
         if casts.any() {
-            let (here, along) = ((&mut *route, met), (path.cosine, albedo));
-            let ends = path.shadow.track(&self.steps, &self.before, here, along, &mut path.score);
+            let ends = path.shadow.track(self.techniques, route, met, &mut path.score);
             path.seeks |= ends & path.meets;
             path.cosine.set_where(ends, path.drawn);
         }
@@ -179,7 +134,7 @@ impl<S: WalkEvents, D: Directions> Walk for ToLight<'_, S, D> {
     }
 }
 
-impl<S: WalkEvents, D: Directions> ToLight<'_, S, D> {
+impl ToLight<'_> {
     /// Chooses a direction to the light for the walks in `scattered`, and draws one.
     #[inline(always)]
     fn scatter<L: Lane>(
@@ -190,8 +145,7 @@ impl<S: WalkEvents, D: Directions> ToLight<'_, S, D> {
         scattered: L::Mask,
         random: &mut impl Random<L>,
     ) {
-        let (LitSlab { phase, light, .. }, directions) = (self.slab, self.directions);
-        let techniques = self.steps.techniques();
+        let (LitSlab { phase, light, .. }, techniques) = (self.slab, self.techniques);
         let before = t.each(self.slab.end()) - t;
         let is_exact = techniques.shadow == Some(Shadow::Exact);
         let (mut slant, mut density) = (t.each(1.0), t.each(0.0));
@@ -199,18 +153,18 @@ impl<S: WalkEvents, D: Directions> ToLight<'_, S, D> {
             let number =
                 if light.can_be_hit() { random.uniform_where(scattered) } else { t.each(0.0) };
             let [cosine, spread] = light.chosen(number, before);
-            density = directions.scattered(phase, cosine) * directions.spread(spread, cosine);
-            slant = directions.slant(cosine);
+            density = phase.value(cosine) * spread;
+            slant = cosine;
             if is_exact {
                 let found = self.before.transmittance(t, slant, scattered);
-                path.score.add_where(scattered, self.steps.connected(density, found));
+                path.score.add_where(scattered, techniques.of_shadow_ray(density, found));
             }
         }
         if techniques.has_hits() {
             let drawn = phase.cosine(random.uniform_where(scattered));
             let meets = scattered & light.is_met(drawn, before);
             if techniques.shadow.is_some() && meets.any() {
-                let spread = directions.spread_of_hit(light.spread(drawn, before));
+                let spread = light.spread(drawn, before);
                 let mut found = t.each(0.0);
                 if is_exact {
                     found = self.before.transmittance(t, drawn, meets);
@@ -224,7 +178,7 @@ impl<S: WalkEvents, D: Directions> ToLight<'_, S, D> {
             path.seeks |= scattered & path.meets;
             path.cosine.set_where(scattered, path.drawn);
         } else {
-            path.shadow.cast_where::<S>(scattered, route, (t, density));
+            path.shadow.cast_where(scattered, route, density);
             path.cosine.set_where(scattered, slant);
         }
     }

@@ -22,7 +22,6 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::collisions::particle::EventProbabilities;
 use theory::problems::Rod;
 use theory::problems::rod::{MAX_PARTS, Quantity};
 
@@ -42,16 +41,16 @@ kept! {
     }
 }
 
-/// A rod, and the steps of walks through it.
+/// A rod, and the rule of walks through it.
 #[derive(Clone, Copy)]
-pub struct InRod<'a, S> {
+pub struct InRod<'a> {
     /// The rod.
     pub rod: &'a Rod,
-    /// The steps at a collision.
-    pub steps: S,
+    /// The rule at a collision, and roulette.
+    pub steps: RuleAndRoulette,
 }
 
-impl<S: WalkEvents> Walk for InRod<'_, S> {
+impl Walk for InRod<'_> {
     type State<L: Lane> = Particle<L>;
 
     #[inline(always)]
@@ -82,18 +81,18 @@ impl<S: WalkEvents> Walk for InRod<'_, S> {
         let (TentativeCollision { inside, t, number, .. }, ratio) = (*met, met.ratio());
         let albedo = self.rod.albedo.value(t);
         self.score(particle, met, albedo);
-        let probabilities = self.steps.probabilities(ratio, albedo);
+        let probabilities = self.steps.rule.probabilities(ratio, albedo);
         let (scattered, straight_on) = probabilities.decide_each(inside, number);
         if scattered.maybe() {
             particle.weight.scale_where(scattered, probabilities.scatter_weight);
             particle.order.count_where(scattered);
             let forward = self.rod.forward.value(t);
-            particle.is_forward ^= self.steps.turns(scattered, forward, number, rng);
+            particle.is_forward ^= scattered & forward.at_most(rng.uniform_where(scattered));
         }
         if straight_on.maybe() {
             particle.weight.scale_where(straight_on, probabilities.transmit_weight);
         }
-        self.steps.survive(scattered | straight_on, &mut particle.weight, rng)
+        roulette(self.steps.roulette, scattered | straight_on, &mut particle.weight, rng)
     }
 
     #[inline(always)]
@@ -116,7 +115,7 @@ impl<S: WalkEvents> Walk for InRod<'_, S> {
     }
 }
 
-impl<S> InRod<'_, S> {
+impl InRod<'_> {
     /// Scores a tentative collision, before its event is decided.
     #[inline(always)]
     fn score<L: Lane>(&self, particle: &mut Particle<L>, met: &TentativeCollision<L>, albedo: L) {
@@ -134,35 +133,7 @@ impl<S> InRod<'_, S> {
     }
 }
 
-/// Events of a walk, each of which a known bug may replace.
-pub trait WalkEvents: Copy {
-    /// The probabilities at collisions with the given ratio `σ_t/σ̂` and albedo.
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L>;
-
-    /// Lanes of `scattered` that turn round, given the share that goes on forward; `decided` is the number that
-    /// decided the collision.
-    #[inline(always)]
-    fn turns<L: Lane>(
-        &self,
-        scattered: L::Mask,
-        forward: L,
-        decided: L,
-        rng: &mut impl Random<L>,
-    ) -> L::Mask {
-        let _ = decided;
-        scattered & forward.at_most(rng.uniform_where(scattered))
-    }
-
-    /// Lanes of `goes_on` that survive roulette, with their weights.
-    fn survive<L: Lane>(
-        &self,
-        goes_on: L::Mask,
-        weight: &mut L,
-        rng: &mut impl Random<L>,
-    ) -> L::Mask;
-}
-
-/// Unmodified events of the walk: a rule, with or without roulette.
+/// A rule, with or without roulette.
 #[derive(Debug, Clone, Copy)]
 pub struct RuleAndRoulette {
     /// The rule at a collision.
@@ -171,24 +142,7 @@ pub struct RuleAndRoulette {
     pub roulette: Option<f64>,
 }
 
-impl WalkEvents for RuleAndRoulette {
-    #[inline(always)]
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        self.rule.probabilities(ratio, albedo)
-    }
-
-    #[inline(always)]
-    fn survive<L: Lane>(
-        &self,
-        goes_on: L::Mask,
-        weight: &mut L,
-        rng: &mut impl Random<L>,
-    ) -> L::Mask {
-        roulette(self.roulette, goes_on, weight, rng)
-    }
-}
-
 /// Makes the draws of a request.
-pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
+pub fn fill(steps: RuleAndRoulette, kernel: Kernel, setup: &Setup<Rod>, request: Request) {
     walks::fill(&InRod { rod: &setup.problem, steps }, kernel, setup, request);
 }

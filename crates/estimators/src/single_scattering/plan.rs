@@ -10,16 +10,15 @@ pub use super::points::{Absorption, Vertices};
 use super::ray_setup::RaySetup;
 use super::shadow::require_shadow;
 use super::shared::Shared;
-use super::vertices::{Right, ToVertices, WalkEvents};
+use super::vertices::ToVertices;
 use crate::setup::Residual;
 use crate::space::connection;
 use crate::space::shadow::ShadowRays;
 use crate::walks::{self, Walk};
-use crate::{Draw, Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits};
+use crate::{Estimator, Inputs, Kernel, Knowledge, Refusal, Request, Setup, Traits};
 use media::catalogue::Settings;
 use media::{Control, Lookups};
 use numeric::geometry::Bounds;
-use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
@@ -65,29 +64,14 @@ impl Vertices {
         }
     }
 
-    /// Runs the walk by steps.
+    /// Runs the walk.
     #[inline(always)]
-    fn run<S: WalkEvents, R: Run>(self, ground: RaySetup, steps: S, run: R) -> R::Output {
+    fn run<R: Run>(self, ground: RaySetup, run: R) -> R::Output {
         match (self.is_chosen(), self.collision.is_some()) {
-            (true, false) => run.run(&ToVertices::<S, true, false>::new(ground, self, steps)),
-            (true, true) => run.run(&ToVertices::<S, true, true>::new(ground, self, steps)),
-            _ => run.run(&ToVertices::<S, false, true>::new(ground, self, steps)),
+            (true, false) => run.run(&ToVertices::<true, false>::new(ground, self)),
+            (true, true) => run.run(&ToVertices::<true, true>::new(ground, self)),
+            _ => run.run(&ToVertices::<false, true>::new(ground, self)),
         }
-    }
-
-    /// Makes one draw by the steps of a walk.
-    #[inline(always)]
-    pub fn draw(
-        self,
-        (steps, shadow): (impl WalkEvents, Tracking),
-        setup: &Setup<SingleScattering>,
-        medium: &Lookups,
-        random: &mut Stream,
-    ) -> Draw {
-        let volume = setup.problem.volume();
-        let rays = ShadowRays::new(volume, volume.bounds(), shadow);
-        let ground = RaySetup::new(setup, medium, &rays, &[]);
-        self.run(ground, steps, One { setup, medium, random })
     }
 
     fn predict(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> Prediction {
@@ -208,7 +192,7 @@ impl Plan {
     #[inline(always)]
     fn run<R: Run>(&self, ground: RaySetup, run: R) -> R::Output {
         match self.technique {
-            Technique::Vertices(vertices) => vertices.run(ground, Right, run),
+            Technique::Vertices(vertices) => vertices.run(ground, run),
             Technique::Interactions => run.run(&Interactions::<false> { ground }),
             Technique::Resampled => run.run(&Interactions::<true> { ground }),
             Technique::Shared(points) => run.run(&Shared { ground, points }),
@@ -276,22 +260,6 @@ pub trait Run {
 
     /// Uses the walk.
     fn run(self, walk: &impl Walk) -> Self::Output;
-}
-
-/// A use that makes one draw.
-struct One<'a, 'r> {
-    setup: &'a Setup<SingleScattering>,
-    medium: &'a Lookups<'a>,
-    random: &'r mut Stream,
-}
-
-impl Run for One<'_, '_> {
-    type Output = Draw;
-
-    #[inline(always)]
-    fn run(self, walk: &impl Walk) -> Draw {
-        walks::draw(walk, &self.setup.fields.sampling, self.medium, self.random)
-    }
 }
 
 /// A use that makes the draws of a request one walk after the other.

@@ -41,6 +41,13 @@ impl<'a> RaySetup<'a> {
         Self { setup, rays, fields, support, extinction, kept: kept() }
     }
 
+    /// The points from the light that uniform numbers choose.
+    #[inline(always)]
+    pub fn from_light<L: Lane>(&self, number: L) -> L {
+        let (problem, angles) = (&*self.setup.problem, self.setup.problem.angles());
+        problem.at_angle(number * angles.length() + angles.from)
+    }
+
     /// The transmittance from the ray's origin to distances, for the lanes in `which`.
     #[inline(always)]
     pub fn transmittance<L: Lane>(&self, to: L, which: L::Mask) -> L {

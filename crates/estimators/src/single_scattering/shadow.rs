@@ -30,9 +30,9 @@ kept! {
         place: [L; 3],
         origin: [L; 3],
         shadows: Shadows<L>,
-        /// Lanes that have found light, and its transmittance.
         lit: L::Mask,
-        light: L,
+        /// The transmittance of lanes that have found light.
+        pub light: L,
     }
 }
 

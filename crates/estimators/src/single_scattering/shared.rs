@@ -9,7 +9,6 @@
 
 use super::ray_setup::RaySetup;
 use super::shadow::{ToLight, scored_by_shadow_rays};
-use super::vertices::{Right, WalkEvents};
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
 use numeric::rng::Random;
@@ -61,7 +60,7 @@ impl Shared<'_> {
         let (begins, zero) = (path.begins, path.s.each(0.0));
         for point in path.points.iter_mut().take(self.points) {
             let number = random.uniform_where(begins);
-            let chosen = Right.point(&self.ground.setup.problem, number);
+            let chosen = self.ground.from_light(number);
             *point = L::select(begins, chosen, *point).sealed();
         }
         path.next.set_where(begins, zero.each(f64::NEG_INFINITY));

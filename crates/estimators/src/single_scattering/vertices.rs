@@ -24,51 +24,7 @@ use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
-use theory::problems::SingleScattering;
 use theory::single::CameraTracking;
-
-/// Events of a walk, each of which a known bug may replace.
-pub trait WalkEvents: Copy {
-    /// The point from the light that a uniform number chooses.
-    #[inline(always)]
-    fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
-        let angles = problem.angles();
-        problem.at_angle(number * angles.length() + angles.from)
-    }
-
-    /// The optical depth of a flight from a distance `here` to the point at s.
-    #[inline(always)]
-    fn depth<L: Lane>(&self, right: L, here: L, s: L) -> L {
-        let _ = (here, s);
-        right
-    }
-
-    /// Lanes of real collisions that end their walk; some of them scatter.
-    #[inline(always)]
-    fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
-        let _ = scattered;
-        real
-    }
-
-    /// The transmittance of the shadow ray from s.
-    #[inline(always)]
-    fn light<L: Lane>(&self, right: L, s: L) -> L {
-        let _ = s;
-        right
-    }
-
-    /// The score of a vertex, where `score` is right for any.
-    #[inline(always)]
-    fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
-        score(vertex)
-    }
-}
-
-/// The right steps.
-#[derive(Clone, Copy)]
-pub struct Right;
-
-impl WalkEvents for Right {}
 
 /// A scattering point that has found light.
 #[derive(Clone, Copy)]
@@ -88,44 +44,45 @@ pub struct Vertex<L: Lane> {
 kept! {
     /// Walks to their points.
     pub struct Path<L> {
-        /// Lanes that begin a point, and lanes that set out from the ray's origin, both in the next step.
-        begins: L::Mask,
-        sets_out: L::Mask,
+        /// Lanes that begin a point in the next step.
+        pub begins: L::Mask,
+        /// Lanes that set out from the ray's origin in the next step.
+        pub sets_out: L::Mask,
         /// Lanes at a point where σ_t is not known yet.
         looks: L::Mask,
-        /// Lanes on their way along the ray, and those of them that fly in this step.
         walks: L::Mask,
-        flies: L::Mask,
+        /// Lanes on their way along the ray that fly in this step.
+        pub flies: L::Mask,
         /// Lanes with a chosen point.
-        is_chosen: L::Mask,
+        pub is_chosen: L::Mask,
         /// Lanes at the second of two chosen points.
         is_second: L::Mask,
         /// Lanes that have yet to begin their next point or draw.
         done: L::Mask,
-        s: L,
+        /// The distance of the point.
+        pub s: L,
         extinction: L,
         kept: L,
-        score: L,
+        /// The score so far.
+        pub score: L,
         /// The number of lookups that needed no step.
         known: L,
-        to_light: ToLight<L>,
+        /// The shadow ray.
+        pub to_light: ToLight<L>,
     }
 }
 
 /// The walk, by points that are `CHOSEN`, by collisions where it `COLLIDES`, or by both.
 #[derive(Clone, Copy)]
-pub struct ToVertices<'a, S, const CHOSEN: bool, const COLLIDES: bool> {
+pub struct ToVertices<'a, const CHOSEN: bool, const COLLIDES: bool> {
     ground: RaySetup<'a>,
     plan: Vertices,
     main: Option<MainPart<'a>>,
     /// c, the probability that a real collision scatters.
     scatters: f64,
-    steps: S,
 }
 
-impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
-    ToVertices<'a, S, CHOSEN, COLLIDES>
-{
+impl<'a, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, CHOSEN, COLLIDES> {
     /// The number of lanes of a pack that score together, and the number that begin together. Lanes stand still
     /// until then: at least one of eight must go on.
     const SCORES: u32 = if CHOSEN { 4 } else { 1 };
@@ -133,12 +90,12 @@ impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
 
     /// The walk on a ground.
     #[inline(always)]
-    pub fn new(ground: RaySetup<'a>, plan: Vertices, steps: S) -> Self {
+    pub fn new(ground: RaySetup<'a>, plan: Vertices) -> Self {
         const { assert!(TOGETHER + Self::SCORES + Self::BEGIN < 8 + 3, "all lanes may wait") };
         let absorption = plan.collision.unwrap_or(Absorption::Weight);
         let scatters = absorption.scatters(ground.setup.problem.albedo());
         let main = if plan.main { MainPart::of(ground.setup) } else { None };
-        Self { ground, plan, main, scatters, steps }
+        Self { ground, plan, main, scatters }
     }
 
     #[inline(always)]
@@ -177,10 +134,10 @@ impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
         let s = match (&self.main, self.plan.light) {
             (Some(main), false) => main.outlined_point(number),
             (Some(main), true) => {
-                let from_light = self.steps.point(&self.ground.setup.problem, number);
+                let from_light = self.ground.from_light(number);
                 L::select(path.is_second, main.outlined_point(number), from_light)
             }
-            (None, _) => self.steps.point(&self.ground.setup.problem, number),
+            (None, _) => self.ground.from_light(number),
         };
         path.s.set_where(looks, s);
         path.is_chosen |= looks;
@@ -227,15 +184,14 @@ impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
         let threshold = number * here.sampling();
         let real = inside & !chosen & threshold.below(extinction);
         let hits = real & threshold.below(extinction * self.scatters);
-        let ends = self.steps.ends::<L>(real, hits);
         if CHOSEN && self.is_tracked() {
             let kept = self.ground.kept(here, t, extinction);
-            path.kept.scale_where(inside & !ends, kept);
+            path.kept.scale_where(inside & !real, kept);
         }
-        path.walks &= !(ends | left);
+        path.walks &= !(real | left);
         path.s.set_where(hits, t);
         path.extinction.set_where(hits, extinction);
-        [hits | (left & chosen), (ends & !hits) | (left & !chosen)]
+        [hits | (left & chosen), (real & !hits) | (left & !chosen)]
     }
 
     /// Handles collisions on the way to points; returns the lanes that arrive, and those that end.
@@ -264,25 +220,25 @@ impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
     /// Scores the vertices of the lanes in `which`.
     #[inline(always)]
     fn score<L: Lane>(&self, path: &mut Path<L>, which: L::Mask, light: L) {
-        let Path { s, extinction, mut kept, .. } = *path;
-        if CHOSEN && !self.is_tracked() {
-            kept = self.ground.transmittance(s, which);
-        }
-        let light = self.steps.light(light, s);
-        let vertex = Vertex { s, extinction, kept, is_chosen: Self::chosen(path), light };
-        let score = self.steps.score(
-            vertex,
-            #[inline(always)]
-            |vertex| self.value(vertex),
-        );
+        let score = self.value(self.vertex(path, which, light));
         // The draw is the score of its only point, its sign included where it is 0.
         let is_only = CHOSEN && !COLLIDES && !self.has_two_points();
         path.score.set_where(which, if is_only { score } else { path.score + score });
     }
 
+    /// The vertices of the lanes in `which`, with the transmittances of their shadow rays.
+    #[inline(always)]
+    pub fn vertex<L: Lane>(&self, path: &Path<L>, which: L::Mask, light: L) -> Vertex<L> {
+        let Path { s, extinction, mut kept, .. } = *path;
+        if CHOSEN && !self.is_tracked() {
+            kept = self.ground.transmittance(s, which);
+        }
+        Vertex { s, extinction, kept, is_chosen: Self::chosen(path), light }
+    }
+
     /// The score of a vertex.
     #[inline(always)]
-    fn value<L: Lane>(&self, vertex: Vertex<L>) -> L {
+    pub fn value<L: Lane>(&self, vertex: Vertex<L>) -> L {
         let (Vertex { s, extinction, kept, is_chosen, light }, plan) = (vertex, &self.plan);
         let problem = &*self.ground.setup.problem;
         if !COLLIDES {
@@ -306,9 +262,7 @@ impl<'a, S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool>
     }
 }
 
-impl<S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool> Walk
-    for ToVertices<'_, S, CHOSEN, COLLIDES>
-{
+impl<const CHOSEN: bool, const COLLIDES: bool> Walk for ToVertices<'_, CHOSEN, COLLIDES> {
     type State<L: Lane> = Path<L>;
 
     const IN_SPACE: bool = true;
@@ -370,11 +324,7 @@ impl<S: WalkEvents, const CHOSEN: bool, const COLLIDES: bool> Walk
         path.sets_out &= !path.sets_out;
         let mut inside = path.flies;
         if (COLLIDES || self.is_tracked()) && path.flies.maybe() {
-            let mut flown = L::select(path.flies, depth, depth.each(0.0));
-            if CHOSEN {
-                flown = self.steps.depth(flown, route.here.reached(), path.s);
-            }
-            inside &= route.here.fly(flown);
+            inside &= route.here.fly(L::select(path.flies, depth, depth.each(0.0)));
             if CHOSEN {
                 inside &= !Self::chosen(path) | route.here.reached().below(path.s);
             }

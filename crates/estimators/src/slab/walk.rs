@@ -24,7 +24,6 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::collisions::particle::EventProbabilities;
 use theory::problems::Slab;
 use theory::problems::slab::Incidence;
 
@@ -32,30 +31,29 @@ kept! {
     /// Particles on their way.
     pub struct Particle<L> {
         /// μ.
-        cosine: L,
+        pub cosine: L,
         /// w.
-        weight: L,
+        pub weight: L,
     }
 }
 
-/// A slab, and the steps of walks through it.
+/// A slab, and the rule of walks through it.
 #[derive(Clone, Copy)]
-pub struct InSlab<'a, S> {
+pub struct InSlab<'a> {
     /// The light on it, and its phase function.
     pub incidence: &'a Incidence,
     /// a.
     pub albedo: f64,
-    /// The steps of the walk.
-    pub steps: S,
+    /// The rule at a collision.
+    pub rule: ParticleRule,
 }
 
-impl<S: WalkEvents> Walk for InSlab<'_, S> {
+impl Walk for InSlab<'_> {
     type State<L: Lane> = Particle<L>;
 
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, which: L::Mask, rng: &mut impl Random<L>) -> Particle<L> {
-        let cosine =
-            entering(self.incidence.light, |number| self.steps.diffuse(number), which, one, rng);
+        let cosine = entering(self.incidence.light, diffuse, which, one, rng);
         Particle { cosine, weight: one }
     }
 
@@ -66,8 +64,7 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
         route: &mut Route<impl BothWays<L>>,
         depth: L,
     ) -> L::Mask {
-        let descent = self.steps.descent(depth, particle.cosine);
-        route.here.fly_either_way(descent, is_down(particle))
+        route.here.fly_either_way(depth * particle.cosine.size(), is_down(particle))
     }
 
     #[inline(always)]
@@ -79,11 +76,11 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
         rng: &mut impl Random<L>,
     ) -> L::Mask {
         let (TentativeCollision { inside, number, .. }, ratio) = (*met, met.ratio());
-        let probabilities = self.steps.probabilities(ratio, ratio.each(self.albedo));
+        let probabilities = self.rule.probabilities(ratio, ratio.each(self.albedo));
         let (scattered, straight_on) = probabilities.decide_each(inside, number);
         if scattered.maybe() {
             let phase = &self.incidence.phase;
-            let mut cosine = self.steps.deflection(phase, rng.uniform_where(scattered));
+            let mut cosine = phase.cosine(rng.uniform_where(scattered));
             if *phase != Phase::Isotropic(Isotropic) {
                 let azimuth = (rng.uniform_where(scattered) * TAU).cos();
                 cosine = turned(particle.cosine, cosine, azimuth);
@@ -114,45 +111,14 @@ fn is_down<L: Lane>(particle: &Particle<L>) -> L::Mask {
     particle.cosine.each(0.0).below(particle.cosine)
 }
 
-/// Events of a walk, each of which a known bug may replace.
-pub trait WalkEvents: Copy {
-    /// The probabilities at collisions with the given ratio `σ_t/σ̂` and albedo.
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L>;
-
-    /// The depth of flights, in optical depth, of the given length along a direction.
-    #[inline(always)]
-    fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
-        length * cosine.size()
-    }
-
-    /// The cosine of the scattering angle, from a uniform number.
-    #[inline(always)]
-    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        phase.cosine(number)
-    }
-
-    /// The cosine of diffuse light, in `(0, 1]`, from a uniform number.
-    #[inline(always)]
-    fn diffuse<L: Lane>(&self, number: L) -> L {
-        diffuse(number)
-    }
-}
-
-impl WalkEvents for ParticleRule {
-    #[inline(always)]
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        ParticleRule::probabilities(*self, ratio, albedo)
-    }
-}
-
 /// Makes the draws of a request: reflectance and transmittance.
-pub fn fill(steps: impl WalkEvents, kernel: Kernel, setup: &Setup<Slab>, request: Request) {
-    walks::fill(&InSlab::of(&setup.problem, steps), kernel, setup, request);
+pub fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Slab>, request: Request) {
+    walks::fill(&InSlab::of(&setup.problem, rule), kernel, setup, request);
 }
 
-impl<'a, S> InSlab<'a, S> {
+impl<'a> InSlab<'a> {
     /// A slab.
-    pub fn of(slab: &'a Slab, steps: S) -> Self {
-        Self { incidence: &slab.incidence, albedo: slab.albedo, steps }
+    pub fn of(slab: &'a Slab, rule: ParticleRule) -> Self {
+        Self { incidence: &slab.incidence, albedo: slab.albedo, rule }
     }
 }

@@ -2,12 +2,11 @@
 
 use fearless_simd::Level;
 
-use super::events::WalkEvents;
 use super::particle::{Particle, Splitting};
 use super::splitting;
 use super::tally::Tally;
 use super::walk::InSpace;
-use crate::walks::{self, plain};
+use crate::walks::{self, Walk, plain};
 use crate::{Draw, Request};
 use media::Majorants;
 use numeric::ScalarLane;
@@ -19,22 +18,16 @@ use theory::problems::{Albedo, Channels, Scene};
 /// faster.
 const MAX_CELLS: usize = 100_000;
 
-/// Makes one draw of a particle by its steps; it follows the particles that split off if it `SPLITS`.
+/// Makes one draw of a walk in space.
 #[inline(never)]
-pub fn draw<V: Channels, T: Tally, const SPLITS: bool>(
-    tally: &T,
-    (steps, splitting): (impl WalkEvents, Splitting),
-    world: (&Scene, &Majorants),
-    random: &mut Stream,
-) -> Draw<V> {
-    let walk = InSpace::new(tally, steps, world, &[]);
+pub fn draw<V: Channels>(walk: &impl Walk, random: &mut Stream) -> Draw<V> {
     compiled_once(
         #[inline(always)]
-        || follow::<f64, V, T, SPLITS>(&walk, splitting, plain::in_doubles(&walk), random),
+        || plain::in_space(walk, plain::in_doubles::<f64>(walk), random),
     )
 }
 
-/// Makes the draws of a request one after the other, as [`draw`] does.
+/// Makes the draws of a request one after the other; it follows the particles that split off if it `SPLITS`.
 pub fn in_turn<V: Channels + AsRef<[f64]>, T: Tally, const SPLITS: bool>(
     tally: &T,
     particle: &Particle,
@@ -64,7 +57,7 @@ pub fn in_turn<V: Channels + AsRef<[f64]>, T: Tally, const SPLITS: bool>(
 /// Makes one draw in any lane of one number, given the value of a field of the walk at a place.
 #[inline(always)]
 pub fn follow<L: ScalarLane, V: Channels, T: Tally, const SPLITS: bool>(
-    walk: &InSpace<T, impl WalkEvents>,
+    walk: &InSpace<T>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,
     random: &mut impl Random<L>,

@@ -2,7 +2,6 @@
 
 pub mod connection;
 pub mod draws;
-mod events;
 pub mod particle;
 pub mod segment;
 pub mod shadow;
@@ -17,11 +16,10 @@ use media::Majorants;
 use theory::problems::Scene;
 use theory::space::Walks;
 
-pub use events::WalkEvents;
 pub use numeric::geometry::exit;
 pub use particle::{Particle, Splitting};
 pub use tally::Tally;
-pub use walker::{Splitter, Walked, Walker, draw};
+pub use walker::{Splitter, Walked, Walker};
 
 /// Maximum expected number of collisions on a straight line through a volume; more are a mistake in the case.
 const MAX_COLLISIONS: f64 = 1e4;

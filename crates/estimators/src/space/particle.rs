@@ -1,12 +1,7 @@
 //! The settings of a particle: its rule, roulette and splitting.
 
-use super::events::WalkEvents;
-use crate::walks::steps::roulette;
 use media::catalogue::{Domain, Settings};
-use numeric::Lane;
-use numeric::rng::Random;
 use theory::ParticleRule;
-use theory::collisions::particle::EventProbabilities;
 
 /// The collisions after which both the scattered particle and the one that goes straight on are followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +26,7 @@ impl Splitting {
     }
 }
 
-/// The settings of a particle, and the right steps of its walk.
+/// The settings of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particle {
     /// The rule at a collision that does not split.
@@ -95,21 +90,4 @@ impl Particle {
 #[allow(clippy::cast_possible_truncation)] // at most a thousand
 fn whole(count: u64) -> u32 {
     count as u32
-}
-
-impl WalkEvents for Particle {
-    #[inline(always)]
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        self.rule.probabilities(ratio, albedo)
-    }
-
-    #[inline(always)]
-    fn survive<L: Lane>(
-        &self,
-        goes_on: L::Mask,
-        weight: &mut L,
-        random: &mut impl Random<L>,
-    ) -> L::Mask {
-        roulette(self.roulette, goes_on, weight, random)
-    }
 }

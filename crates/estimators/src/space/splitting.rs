@@ -3,7 +3,6 @@
 //! At a collision that splits both the scattered particle and the transmitted one are followed, the scattered one
 //! later. The draw is the sum of their scores.
 
-use super::events::WalkEvents;
 use super::particle::Splitting;
 use super::tally::Tally;
 use super::walk::{InSpace, Path};
@@ -20,8 +19,8 @@ pub type Waiting<L> = Vec<(Path<L>, u32)>;
 /// Makes one draw: follows a walk and the particles that split off to their ends. `waiting` is empty before and after
 /// it; its memory serves many draws.
 #[inline(always)]
-pub fn follow<L: ScalarLane, V: Channels, T: Tally, S: WalkEvents>(
-    walk: &InSpace<T, S>,
+pub fn follow<L: ScalarLane, V: Channels, T: Tally>(
+    walk: &InSpace<T>,
     splitting: Splitting,
     look_up: impl Fn(usize, [L; 3]) -> L,
     random: &mut impl Random<L>,
@@ -52,7 +51,7 @@ pub fn follow<L: ScalarLane, V: Channels, T: Tally, S: WalkEvents>(
             if goes_on {
                 continue;
             }
-        } else if !walk.decide(&mut state, &at, flight, random) {
+        } else if !walk.decide(&mut state, &at, random) {
             continue;
         }
         let Some(next) = waiting.pop() else { return scored(walk, &state, false, lookups) };

@@ -13,14 +13,15 @@
 //!
 //! A flight takes a random number, a collision one where more than one event is possible, a scattering one for θ
 //! and one for φ, roulette one. Cells without σ̂, and all that lies outside the bounds, cost nothing. A [`Tally`]
-//! scores the walk; each of its [`WalkEvents`] may be that of a known bug.
+//! scores the walk.
 //!
 //! Shadow rays and new directions cost more than a step. A lane that needs one stands still until several lanes of
 //! a pack do; meanwhile, the others go on.
 
-use super::events::WalkEvents;
+use super::particle::Particle;
 use super::shadow::{ShadowRays, Shadows};
 use super::tally::{Collision, Departure, Scattering, Tally};
+use crate::walks::steps::roulette;
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
 use media::sampling::{Flights, MajorantView};
@@ -53,14 +54,15 @@ kept! {
         /// Lookups that needed no step.
         known: L,
         shadows: Shadows<L>,
-        /// Lanes at a tentative collision of a walk or of a shadow ray, the places, and σ̂ of the walks there.
+        /// Lanes at a tentative collision of a walk or of a shadow ray, and the places.
         inside: L::Mask,
         place: [L; 3],
-        sampling: L,
+        /// σ̂ of walks at their tentative collisions.
+        pub sampling: L,
         /// Lanes with a walk that ended in this step.
-        pub(super) ended: L::Mask,
+        pub ended: L::Mask,
         /// Lanes that were scattered in this step.
-        scattered: L::Mask,
+        pub scattered: L::Mask,
         /// Lanes with a shadow ray that came to its end in this step.
         lit: L::Mask,
         /// Lanes that have yet to cast a shadow ray.
@@ -75,11 +77,13 @@ kept! {
 /// Lanes of a pack that set out together.
 const TOGETHER: u32 = 3;
 
-/// Particles in a scene, their steps, and their tally.
-pub struct InSpace<'a, T, S> {
+/// Particles in a scene, and their tally.
+pub struct InSpace<'a, T> {
     tally: &'a T,
-    steps: S,
-    scene: &'a Scene,
+    /// The particle: its rule and roulette.
+    pub particle: Particle,
+    /// The medium.
+    pub scene: &'a Scene,
     ground: MajorantView<'a>,
     shadow_rays: Option<ShadowRays<'a>>,
     /// a, where it is the same everywhere.
@@ -88,24 +92,24 @@ pub struct InSpace<'a, T, S> {
     fields: &'a [Batches<'a>],
 }
 
-impl<T, S: Copy> Clone for InSpace<'_, T, S> {
+impl<T> Clone for InSpace<'_, T> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T, S: Copy> Copy for InSpace<'_, T, S> {}
+impl<T> Copy for InSpace<'_, T> {}
 
-impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
+impl<'a, T: Tally> InSpace<'a, T> {
     /// The walk through a scene and its σ̂; packs provide the fields that they look up.
     pub fn new(
         tally: &'a T,
-        steps: S,
+        particle: Particle,
         (scene, majorants): (&'a Scene, &'a Majorants),
         fields: &'a [Batches<'a>],
     ) -> Self {
         let (ground, albedo) = (MajorantView::new(majorants, tally.core()), scene.albedo.even());
-        Self { tally, steps, scene, ground, shadow_rays: tally.shadow_rays(), albedo, fields }
+        Self { tally, particle, scene, ground, shadow_rays: tally.shadow_rays(), albedo, fields }
     }
 
     /// Lanes that stand still until they set out together.
@@ -117,16 +121,26 @@ impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
     /// Flies; returns the lanes at a tentative collision.
     #[inline(always)]
     pub fn advance<L: Lane>(&self, state: &mut State<L, T::Found<L>>, depth: L) -> L::Mask {
-        let (waits, origin) = (Self::waits(state), state.path.flights.origin);
-        let walks = if T::CASTS { !waits & !state.shadows.on } else { !waits };
-        let steps = &self.steps;
-        let flown = state.path.flights.fly(
-            &self.ground,
-            walks,
+        self.advance_through(
+            state,
             depth,
             #[inline(always)]
-            move |here, begun| steps.through(here, begun),
-        );
+            |here, _| here,
+        )
+    }
+
+    /// Flies through a σ̂ computed from that of a cell and that of the cell in which the flight began; returns the
+    /// lanes at a tentative collision.
+    #[inline(always)]
+    pub fn advance_through<L: Lane>(
+        &self,
+        state: &mut State<L, T::Found<L>>,
+        depth: L,
+        sampling: impl Fn(L, L) -> L + Copy,
+    ) -> L::Mask {
+        let (waits, origin) = (Self::waits(state), state.path.flights.origin);
+        let walks = if T::CASTS { !waits & !state.shadows.on } else { !waits };
+        let flown = state.path.flights.fly(&self.ground, walks, depth, sampling);
         (state.inside, state.place, state.sampling) = (flown.inside, origin, flown.sampling);
         state.place.set_where(walks, flown.place);
         self.tally.flown(&mut state.found, flown.length, state.path.weight);
@@ -169,30 +183,29 @@ impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
         at
     }
 
-    /// Decides the events at collisions after flights of optical depths; returns the lanes that end.
+    /// Decides the events at collisions; returns the lanes that end.
     #[inline(always)]
     pub fn decide<L: Lane>(
         &self,
         state: &mut State<L, T::Found<L>>,
         at: &Collision<L>,
-        depth: L,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let Collision { inside, place, weight, ratio, albedo } = *at;
         let (zero, one, walks) = (weight.each(0.0), weight.each(1.0), state.ended);
-        let probabilities = self.steps.probabilities(ratio, albedo);
+        let probabilities = self.particle.rule.probabilities(ratio, albedo);
         // A number is taken only where more than one event is possible.
         let surely_on = probabilities.scatter.at_most(zero) & one.at_most(probabilities.transmit);
         let surely_scattered = !surely_on & one.at_most(probabilities.scatter);
         let by_chance = inside & !surely_on & !surely_scattered;
-        let number = self.steps.number(by_chance, depth, random);
+        let number = random.uniform_where(by_chance);
         let (is_scattered, is_passed) = probabilities.decide_each(by_chance, number);
         let is_scattered = is_scattered | (inside & surely_scattered);
         let goes_on = is_scattered | is_passed | (inside & surely_on);
         let factor =
             L::select(is_scattered, probabilities.scatter_weight, probabilities.transmit_weight);
         state.path.weight.scale_where(goes_on, factor);
-        let goes_on = self.steps.survive(goes_on, &mut state.path.weight, random);
+        let goes_on = roulette(self.particle.roulette, goes_on, &mut state.path.weight, random);
         state.ended = walks & !goes_on;
         Self::scatter(state, is_scattered & goes_on, place);
         state.ended
@@ -305,15 +318,14 @@ impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
         casts: L::Mask,
         random: &mut impl Random<L>,
     ) -> [L; 3] {
-        let (before, phase, steps) = (path.flights.direction, &self.scene.phase, &self.steps);
+        let (before, phase) = (path.flights.direction, &self.scene.phase);
         let mut cosine = number.outlined_if_narrow(
             #[inline(always)]
-            move || steps.deflection(phase, number),
+            move || phase.cosine(number),
         );
-        let mut axis = steps.axis(before);
+        let mut axis = before;
         if self.tally.begins_turned() {
-            let first = steps.first_cosine(self.tally.first_cosine(number), number);
-            cosine.set_where(path.unscattered, first);
+            cosine.set_where(path.unscattered, self.tally.first_cosine(number));
         }
         if T::CASTS {
             let aim = self.tally.aim(path.flights.origin, number);
@@ -333,7 +345,7 @@ impl<'a, T: Tally, S: WalkEvents> InSpace<'a, T, S> {
     }
 }
 
-impl<T: Tally, S: WalkEvents> Walk for InSpace<'_, T, S> {
+impl<T: Tally> Walk for InSpace<'_, T> {
     type State<L: Lane> = State<L, T::Found<L>>;
 
     const ON_RAY: bool = false;
@@ -393,7 +405,7 @@ impl<T: Tally, S: WalkEvents> Walk for InSpace<'_, T, S> {
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let at = self.score(state, met.in_space, random);
-        !self.decide(state, &at, met.number, random)
+        !self.decide(state, &at, random)
     }
 
     #[inline(always)]

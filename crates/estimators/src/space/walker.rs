@@ -1,11 +1,9 @@
 //! The estimators of problems in space: particles that walk by a rule, and particles that split.
 
-use super::events::WalkEvents;
 use super::{Particle, Tally, draws};
 use crate::setup::Space;
 use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::catalogue::Settings;
-use numeric::rng::Stream;
 use theory::Prediction;
 use theory::problems::{Channels, Scene};
 
@@ -36,22 +34,6 @@ pub trait Walked: Estimated<Fields = Space, Value: Channels> {
         setup: &'a Setup<Self>,
         particle: &Particle,
     ) -> Result<Self::Tally<'a>, Draw<Self::Value>>;
-}
-
-/// Makes a draw of a particle by its steps; it follows the particles that split off if it `SPLITS`.
-#[inline(always)]
-pub fn draw<P: Walked, const SPLITS: bool>(
-    steps: impl WalkEvents,
-    particle: &Particle,
-    setup: &Setup<P>,
-    random: &mut Stream,
-) -> Draw<P::Value> {
-    let tally = match P::tally(setup, particle) {
-        Ok(tally) => tally,
-        Err(draw) => return draw,
-    };
-    let world = (setup.problem.scene(), &*setup.fields);
-    draws::draw::<_, _, SPLITS>(&tally, (steps, particle.splitting), world, random)
 }
 
 /// A particle that walks; σ̂ in space is its input. With `SPLITS` it splits.

@@ -43,7 +43,6 @@ use media::sampling::BothWays;
 use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
-use theory::light::Techniques;
 use theory::problems::SpectralLitRod;
 use theory::rod::lit::spectral::{FULL, HITS, Tracker};
 
@@ -56,11 +55,7 @@ pub struct Independent {
 
 impl Independent {
     #[inline(always)]
-    fn walk<'a>(
-        &self,
-        setup: &'a Setup<SpectralLitRod>,
-        albedos: Albedos<'a>,
-    ) -> OfHero<'a, Techniques> {
+    fn walk<'a>(&self, setup: &'a Setup<SpectralLitRod>, albedos: Albedos<'a>) -> OfHero<'a> {
         let (count, first) = (setup.fields.len(), &setup.fields[0]);
         let [mut mean_free_paths, mut probabilities] = [[0.0; MAX_CHANNELS]; 2];
         for (channel, own) in setup.fields.iter().enumerate() {
@@ -70,7 +65,7 @@ impl Independent {
         let (rod, end) = (&setup.problem.rods[0].rod, first.mesh.support().to);
         let techniques = if self.is_full { FULL } else { HITS };
         OfHero {
-            walk: ToEmitter::new(rod, &first.sampling, end, techniques),
+            walk: ToEmitter::new(rod, end, techniques),
             law: HeroDistribution::new(&self.heroes, count),
             count,
             mean_free_paths,
@@ -126,8 +121,8 @@ kept! {
 
 /// A walk through the medium of its hero.
 #[derive(Clone, Copy)]
-struct OfHero<'a, S> {
-    walk: ToEmitter<'a, S>,
+struct OfHero<'a> {
+    walk: ToEmitter<'a>,
     law: HeroDistribution,
     count: usize,
     mean_free_paths: [f64; MAX_CHANNELS],
@@ -154,7 +149,7 @@ impl<L: Lane> Scatterers<L> for Own<L> {
     }
 }
 
-impl Walk for OfHero<'_, Techniques> {
+impl Walk for OfHero<'_> {
     type State<L: Lane> = Alone<L>;
 
     const IS_CHROMATIC: bool = true;

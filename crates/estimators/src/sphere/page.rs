@@ -8,7 +8,8 @@ use super::combined::Combined;
 use super::sharing::{Correct, SharedTechniques, Subpaths, WalkEvents};
 use super::{connected, realisable};
 use crate::space::connection;
-use crate::space::{Particle, Splitting, draws};
+use crate::space::walk::InSpace;
+use crate::space::{Particle, draws};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::Majorants;
 use media::catalogue::Settings;
@@ -41,7 +42,7 @@ impl Method {
         let combined =
             Combined::<_, true>::new((sphere, majorants), particle.rule, (sharing, steps));
         let world = (&sphere.scene, majorants);
-        draws::draw::<_, _, false>(&combined, (particle, Splitting::None), world, random)
+        draws::draw(&InSpace::new(&combined, particle, world, &[]), random)
     }
 
     /// Makes a draw of an experiment by steps.

@@ -55,7 +55,8 @@ impl SharedTechniques {
     }
 }
 
-/// Events of a walk, each of which a known bug may replace.
+/// Events of a walk, each of which a known bug may replace. Scores, weights and connections are computed within one step, so
+/// that a walk around this one could not change them.
 pub trait WalkEvents: Copy {
     /// The light of shadow rays from places, given the right one.
     #[inline(always)]

@@ -10,11 +10,18 @@
 use super::{Line, Mutant, On, family, on, one_by_one};
 use estimators::bidirectional_rod::Method;
 use estimators::bidirectional_rod::path::Path;
-use estimators::bidirectional_rod::walk::{self, WalkEvents};
+use estimators::bidirectional_rod::subpath::Tracker;
+use estimators::bidirectional_rod::walk::{Alone, make_paths};
+use estimators::{Draw, Setup};
 use gate::CheckId;
-use numeric::Lane;
+use media::Lookups;
+use media::sampling::FlightWithGaps;
+use numeric::fused::compiled_once;
+use numeric::rng::Stream;
+use numeric::{Lane, Span};
 use theory::light::Heuristic;
-use theory::problems::BidirectionalRod;
+use theory::problems::bidirectional_rod::{MAX_CHANNELS, Values};
+use theory::problems::{BidirectionalRod, Problem};
 use theory::rod::bidirectional::{Combination, quotient};
 
 /// Both orders of a rod by all techniques, exact connections.
@@ -70,7 +77,12 @@ const LINES: &[Line<Method, Bug>] = &[
 pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
     family(LINES, &Bug::None, |&page, &bug| {
         let wrong = Wrong { page, bug };
-        one_by_one(move |setup, medium, random| walk::draw(&wrong, setup, medium, random))
+        one_by_one(move |setup, medium, random| {
+            compiled_once(
+                #[inline(always)]
+                || wrong.draw(setup, medium, random),
+            )
+        })
     })
 }
 
@@ -82,85 +94,81 @@ struct Wrong {
 }
 
 impl Wrong {
-    /// `a ρ` at the camera's end of the connection.
-    fn camera<L: Lane>(path: &Path<L>) -> L {
-        let s = path.light;
-        let one = path.at[0].each(1.0);
-        if (1..=path.order).contains(&s) { path.phase[s - 1] * path.albedo } else { one }
-    }
-
-    /// `T̂` of the connection.
-    fn connection<L: Lane>(path: &Path<L>) -> L {
-        let s = path.light;
-        let one = path.at[0].each(1.0);
-        if (1..=path.order + 1).contains(&s) { path.transmittance[s - 1] } else { one }
-    }
-
-    /// The inverse of `cⱼ` with null vertices in the path's own technique only.
-    fn density<L: Lane>(path: &Path<L>, j: usize) -> L {
-        let one = path.at[0].each(1.0);
-        let of = |i: usize| if i + 1 == path.light { path.transmittance[i] } else { one };
-        one / quotient(j, path.order, of, |i| path.phase[i - 1] * path.albedo)
-    }
-
-    fn sum<L: Lane>(path: &Path<L>, terms: impl Iterator<Item = L>) -> L {
-        terms.fold(path.at[0].each(0.0), |sum, term| sum + term)
-    }
-}
-
-impl WalkEvents for Wrong {
-    fn combination(&self) -> Combination {
-        self.page.combination
-    }
-
-    fn is_tracked(&self) -> bool {
-        self.page.is_tracked
-    }
-
-    fn is_shared(&self) -> bool {
-        self.page.is_shared
-    }
-
-    fn begin<R: Copy>(&self, random: &mut R, beginning: &R) {
-        if self.bug == Bug::SameNumbers {
-            *random = *beginning;
+    /// Makes a draw: the values of all techniques, and their sum.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+    fn draw(
+        &self,
+        setup: &Setup<BidirectionalRod>,
+        medium: &Lookups,
+        random: &mut Stream,
+    ) -> Draw<Values> {
+        let (problem, beginning) = (&*setup.problem, *random);
+        let mut values = Values { at: [0.0; MAX_CHANNELS], count: 0 };
+        // σ̂ of the case has one value.
+        let Some(sampling) = setup.fields.sampling.with_gaps() else {
+            return Draw::free(values, 0);
+        };
+        let begin = FlightWithGaps::new(0.0, sampling);
+        let mut tracker = Tracker::new(setup, 0.0, [begin, begin.from_end()], Alone(medium));
+        for order in problem.orders.clone() {
+            for s in self.page.combination.techniques(order) {
+                if self.bug == Bug::SameNumbers {
+                    *random = beginning;
+                }
+                let has_path = make_paths(self.page, &mut tracker, [order, s], true, random);
+                if self.bug == Bug::WrongSegment && s >= 2 {
+                    let [a, b] = [tracker.path.at[s - 2], tracker.path.at[s]];
+                    let passed = problem.medium().optical_depth(Span::new(a.min(b), a.max(b)));
+                    tracker.path.transmittance[s - 1] = Lane::exp(-passed.value);
+                }
+                if has_path {
+                    values.at[values.count] = self.value(&tracker.path);
+                }
+                values.count += 1;
+            }
         }
+        let each = &values.at[..values.count];
+        let sum: f64 = each.iter().sum();
+        let sum = match self.bug {
+            Bug::Twice => sum + each[1],
+            Bug::Averaged => sum / each.len() as f64,
+            _ => sum,
+        };
+        values.at[values.count] = sum;
+        values.count += 1;
+        Draw::free(values, tracker.lookups as u32)
     }
 
-    fn joined<L: Lane>(&self, path: &Path<L>) -> usize {
-        let is_wrong = self.bug == Bug::WrongSegment && path.light >= 2;
-        path.light - if is_wrong { 2 } else { 1 }
-    }
-
-    fn weight<L: Lane>(&self, path: &Path<L>) -> L {
-        let (weight, s) = (self.page.weight(path), path.light);
+    /// The value of a path.
+    fn value(&self, path: &Path<f64>) -> f64 {
+        let (value, s) = (self.page.value(path), path.light);
         let is_hit = |j: usize| j == 0 || j == path.order + 2;
-        let one = weight.each(1.0);
+        let techniques = 0..path.order + 3;
+        let connection = if is_hit(s) { 1.0 } else { path.transmittance[s - 1] };
         match self.bug {
-            Bug::VertexCount => weight / Self::camera(path),
+            Bug::VertexCount if (1..=path.order).contains(&s) => {
+                value / (path.phase[s - 1] * path.albedo)
+            }
             Bug::Reversed if (1..=path.order).contains(&s) => {
-                weight * path.phase[s - 1].one_minus() / path.phase[s - 1]
+                value * path.phase[s - 1].one_minus() / path.phase[s - 1]
             }
             Bug::HitsWithoutDensity => {
-                let others = (0..path.order + 3).filter(|&j| !is_hit(j));
-                one / Self::sum(path, others.map(|j| one / path.quotient(j)))
+                1.0 / techniques
+                    .filter(|&j| !is_hit(j))
+                    .map(|j| 1.0 / path.quotient(j))
+                    .sum::<f64>()
             }
             Bug::NullsInOne => {
-                let all = Self::sum(path, (0..path.order + 3).map(|j| Self::density(path, j)));
-                Self::density(path, s) / all * path.quotient(s)
+                // The inverse of `cⱼ` with null vertices in the path's own technique only.
+                let nulls = |i: usize| if i + 1 == s { path.transmittance[i] } else { 1.0 };
+                let scattered = |i: usize| path.phase[i - 1] * path.albedo;
+                let density = |j| 1.0 / quotient(j, path.order, nulls, scattered);
+                density(s) / techniques.map(density).sum::<f64>() * path.quotient(s)
             }
-            Bug::TrackedTwice => weight * Self::connection(path),
-            Bug::DirectionalDensity => weight / Self::connection(path),
-            _ => weight,
-        }
-    }
-
-    fn together<L: Lane>(&self, each: &[L]) -> L {
-        let sum = self.page.together(each);
-        match self.bug {
-            Bug::Twice => sum + each[1],
-            Bug::Averaged => sum / sum.each(each.len() as f64),
-            _ => sum,
+            Bug::TrackedTwice => value * connection,
+            Bug::DirectionalDensity => value / connection,
+            _ => value,
         }
     }
 }

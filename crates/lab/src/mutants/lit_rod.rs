@@ -7,12 +7,17 @@
 //! Several are errors of Algorithms 1 and 2 of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them.
 
+use super::altered::{Altered, Change};
 use super::{Line, Mutant, On, family, filled, on};
-use estimators::lit_rod::shadow::WalkEvents;
-use estimators::lit_rod::walk::ToEmitter;
-use estimators::walks;
+use estimators::lit_rod::walk::{Path, Scatterers, ToEmitter};
+use estimators::setup::Line as Along;
+use estimators::walks::{self, Route, TentativeCollision, Walk};
+use estimators::{Estimated, Setup};
 use gate::CheckId;
-use numeric::Lane;
+use media::OpticalDepth;
+use media::sampling::BothWays;
+use numeric::rng::Random;
+use numeric::{Lane, Span};
 use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
 
@@ -26,9 +31,8 @@ const DIRECTIONAL: On<Techniques> =
 /// All densities, ratio tracking.
 const FULL: On<Techniques> = on("rod/lit-rising", 6, balanced(Shadow::Ratio, Densities::Full));
 
-/// The bugs, each in one step of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bug {
+enum Bug {
     None,
     LastSegment,
     Averaged,
@@ -69,7 +73,8 @@ const LINES: &[Line<Techniques, Bug>] = &[
 pub fn mutants() -> Vec<Mutant<LitRod>> {
     family(LINES, &Bug::None, |&techniques, &bug| {
         filled(move |setup, request| {
-            walks::in_turn(&ToEmitter::of(setup, Wrong(techniques, bug)), setup, request);
+            let walk = ToEmitter::of(setup, techniques);
+            walks::in_turn(&Altered { walk, change: Wrong { bug, setup } }, setup, request);
         })
     })
 }
@@ -85,69 +90,86 @@ pub const fn balanced(shadow: Shadow, densities: Densities) -> Techniques {
     Techniques { shadow: Some(shadow), combination }
 }
 
-/// The steps of techniques with a bug.
+/// `∫σ̂` from distances to the end of a medium.
+pub fn flight_to_end<P: Estimated<Fields = Along>, L: Lane>(setup: &Setup<P>, t: L) -> L {
+    let (sampling, end) = (&setup.fields.sampling, setup.fields.mesh.support().to);
+    t.map(|t| sampling.optical_depth(Span::new(t, end)).value)
+}
+
+/// A walk with a bug.
 #[derive(Clone, Copy)]
-pub struct Wrong(pub Techniques, pub Bug);
+struct Wrong<'a> {
+    bug: Bug,
+    setup: &'a Setup<LitRod>,
+}
 
-impl WalkEvents for Wrong {
-    const KEEPS_LAST: bool = true;
-
-    fn techniques(&self) -> Techniques {
-        self.0
-    }
-
-    fn unscattered<L: Lane>(&self, one: L) -> L {
-        if self.1 == Bug::UnscatteredWeighted { self.0.of_hit(one) } else { one }
-    }
-
-    fn hit<L: Lane>(&self, ratio: L) -> L {
-        let right = self.0.of_hit(ratio);
-        match self.1 {
-            Bug::Averaged => right * 0.5,
-            Bug::HitAlone => ratio.each(1.0),
-            Bug::Squared => right * right,
-            _ => right,
+impl Change<ToEmitter<'_>> for Wrong<'_> {
+    fn fly<L: Lane>(
+        &self,
+        walk: &ToEmitter,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let inside = walk.fly(path, route, depth);
+        if self.bug == Bug::LastSegment {
+            // What is left is the last segment's.
+            path.shadow.found.scale_where(path.shadow.casts & inside, (-depth).exp());
         }
+        inside
     }
 
-    fn connected<L: Lane>(&self, density: L, transmittance: L) -> L {
-        let right = self.0.of_shadow_ray(density, transmittance);
-        match self.1 {
-            Bug::Averaged => right * 0.5,
-            Bug::NullsInOne => density * transmittance / (density + 1.0),
-            Bug::ShadowTwice => right * transmittance,
-            Bug::Squared => right / (density + 1.0),
-            _ => right,
+    fn collide<L: Lane>(
+        &self,
+        walk: &ToEmitter,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (bug, before, here, mut met) = (self.bug, *path, route.here, *met);
+        let (one, casts, albedo) = (met.t.each(1.0), before.shadow.casts, walk.rod.albedo(met.t));
+        let hits = !casts & !met.inside & before.is_forward;
+        match bug {
+            Bug::HitAlone => path.unscattered |= hits,
+            Bug::UnscatteredWeighted => {
+                path.ratio.set_where(hits & path.unscattered, one);
+                path.unscattered &= !hits;
+            }
+            Bug::ThroughScattering => {
+                met.extinction = met.extinction * L::select(casts, albedo.one_minus(), one);
+            }
+            _ => {}
         }
-    }
-
-    fn after_null<L: Lane>(&self, ratio: L, null: L) -> L {
-        if self.1 == Bug::NullsMissing { ratio } else { self.0.after_null(ratio, null) }
-    }
-
-    fn after_scattering<L: Lane>(&self, before: L, right: L) -> L {
-        if self.1 == Bug::NotReset { right * before } else { right }
-    }
-
-    fn phase<L: Lane>(&self, forward: L, is_forward: L::Mask, albedo: L) -> L {
-        let right = self.0.phase(forward, is_forward, albedo);
-        match self.1 {
-            Bug::AlbedoTwice => right * albedo,
-            Bug::Isotropic => forward.each(0.5),
-            Bug::Reversed => right.one_minus(),
-            _ => right,
+        path.score = one.each(0.0);
+        let goes_on = walk.collide(path, route, &met, random);
+        let begins = path.shadow.casts & !casts;
+        let shadow = &mut path.shadow;
+        let (density, found) = (before.shadow.density, before.shadow.found);
+        let arrives = casts & !met.inside;
+        match bug {
+            Bug::Averaged => path.score.scale_where(arrives | !before.unscattered, one * 0.5),
+            Bug::Squared => {
+                path.score.scale_where(hits, path.score);
+                path.score.set_where(arrives, path.score / (density + 1.0));
+            }
+            Bug::NullsInOne => path.score.set_where(arrives, density * found / (density + 1.0)),
+            Bug::ShadowTwice => path.score.scale_where(arrives, found),
+            Bug::NullsMissing => path.ratio.set_where(!casts & !begins, before.ratio),
+            Bug::NotReset => path.ratio.scale_where(begins, before.ratio),
+            Bug::AlbedoTwice => shadow.density.scale_where(begins, albedo),
+            Bug::Isotropic => shadow.density.set_where(begins, one * 0.5),
+            Bug::Reversed => {
+                shadow.density.set_where(begins, shadow.density.one_minus());
+                path.ratio.set_where(begins, path.ratio.one_minus());
+            }
+            Bug::LastSegment => {
+                shadow.found.set_where(begins, flight_to_end(self.setup, met.t).exp());
+            }
+            Bug::CarriedAlong => route.here.copy_where(casts & !shadow.casts, &here),
+            Bug::None | Bug::HitAlone | Bug::UnscatteredWeighted | Bug::ThroughScattering => {}
         }
-    }
-
-    fn stops<L: Lane>(&self, ratio: L, albedo: L) -> L {
-        if self.1 == Bug::ThroughScattering { ratio * albedo.one_minus() } else { ratio }
-    }
-
-    fn arrived<L: Lane>(&self, transmittance: L, last: impl Fn() -> L) -> L {
-        if self.1 == Bug::LastSegment { transmittance * last().exp() } else { transmittance }
-    }
-
-    fn returns(&self) -> bool {
-        self.1 != Bug::CarriedAlong
+        path.score = path.score + before.score;
+        goes_on
     }
 }

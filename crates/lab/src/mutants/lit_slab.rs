@@ -4,13 +4,16 @@
 //! X = q t̂ w_nee(ρ) + [hit] w_uni(ρ),   q = p(μ)/p_nee,   p_nee = D²/(A μ³) for a disc,   ρ = q Π (1 − r)
 //! ```
 
-use super::lit_rod::{self, balanced, next_event};
+use super::altered::{Altered, Change};
+use super::lit_rod::{balanced, flight_to_end, next_event};
 use super::{Line, Mutant, On, family, filled, on};
-use estimators::lit_slab::walk::{Directions, Right, ToLight};
-use estimators::walks;
+use estimators::Setup;
+use estimators::lit_slab::walk::{Path, ToLight};
+use estimators::walks::{self, Route, TentativeCollision, Walk};
 use gate::CheckId;
-use media::phase::Phase;
+use media::sampling::BothWays;
 use numeric::Lane;
+use numeric::rng::Random;
 use theory::light::{Densities, Shadow, Techniques};
 use theory::problems::LitSlab;
 
@@ -24,11 +27,13 @@ const FULL: On<Techniques> = on("slab/lit-known-bugs", 6, balanced(Shadow::Ratio
 /// A beam behind the same slab.
 const DISTANT: On<Techniques> = on("slab/lit-distant", 3, next_event(Shadow::Ratio));
 
-/// The bugs: in a step of a rod's walk, in the techniques, and in densities of directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bug {
     None,
-    Step(lit_rod::Bug),
+    ShadowTwice,
+    HitAlone,
+    NullsMissing,
+    LastSegment,
     BeamWeighted,
     CosineMissing,
     Upright,
@@ -42,12 +47,12 @@ const LINES: &[Line<Techniques, Bug>] = &[
     ("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", NEXT_EVENT, CheckId::Mean, Bug::CosineMissing),
     ("lit-slab-upright", "shadow rays fly as deep as if they went straight down", NEXT_EVENT, CheckId::Mean, Bug::Upright),
     ("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", NEXT_EVENT, CheckId::Mean, Bug::Reversed),
-    ("lit-slab-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, CheckId::Mean, Bug::Step(lit_rod::Bug::ShadowTwice)),
+    ("lit-slab-shadow-twice", "the transmittance of a shadow ray is a weight twice", NEXT_EVENT, CheckId::Mean, Bug::ShadowTwice),
     ("lit-slab-areas-mixed", "a hit compares p(μ) per steradian with a density per area of the disc", DIRECTIONAL, CheckId::Mean, Bug::AreasMixed),
     ("lit-slab-phase-alone", "a hit is weighted as if p_nee were 1, as in a rod", DIRECTIONAL, CheckId::Mean, Bug::PhaseAlone),
-    ("lit-slab-hit-alone", "hits are not divided by p_uni + p_nee", FULL, CheckId::Mean, Bug::Step(lit_rod::Bug::HitAlone)),
-    ("lit-slab-nulls-missing", "null collisions are left out of the density of hits only", FULL, CheckId::Mean, Bug::Step(lit_rod::Bug::NullsMissing)),
-    ("lit-slab-last-segment", "the last segment's transmittance is in the densities, and not in f", FULL, CheckId::Mean, Bug::Step(lit_rod::Bug::LastSegment)),
+    ("lit-slab-hit-alone", "hits are not divided by p_uni + p_nee", FULL, CheckId::Mean, Bug::HitAlone),
+    ("lit-slab-nulls-missing", "null collisions are left out of the density of hits only", FULL, CheckId::Mean, Bug::NullsMissing),
+    ("lit-slab-last-segment", "the last segment's transmittance is in the densities, and not in f", FULL, CheckId::Mean, Bug::LastSegment),
     ("lit-slab-beam-weighted", "a shadow ray to a beam is weighted as if it could be hit", DISTANT, CheckId::Mean, Bug::BeamWeighted),
 ];
 
@@ -58,32 +63,73 @@ pub fn mutants() -> Vec<Mutant<LitSlab>> {
             Bug::BeamWeighted => balanced(Shadow::Ratio, Densities::Full),
             _ => right,
         };
-        let step = if let Bug::Step(step) = bug { step } else { lit_rod::Bug::None };
         filled(move |setup, request| {
-            let steps = lit_rod::Wrong(techniques, step);
-            walks::in_turn(&ToLight::of(setup, steps, bug), setup, request);
+            let walk = ToLight::of(setup, techniques);
+            walks::in_turn(&Altered { walk, change: Wrong { bug, setup } }, setup, request);
         })
     })
 }
 
-impl Directions for Bug {
-    fn scattered<L: Lane>(&self, phase: &Phase, cosine: L) -> L {
-        phase.value(if *self == Self::Reversed { -cosine } else { cosine })
-    }
+/// A walk with a bug.
+#[derive(Clone, Copy)]
+struct Wrong<'a> {
+    bug: Bug,
+    setup: &'a Setup<LitSlab>,
+}
 
-    fn spread<L: Lane>(&self, right: L, cosine: L) -> L {
-        if *self == Self::CosineMissing { right / cosine } else { right }
-    }
-
-    fn spread_of_hit<L: Lane>(&self, right: L) -> L {
-        match self {
-            Self::AreasMixed => right.each(std::f64::consts::PI * 1.44),
-            Self::PhaseAlone => right.each(1.0),
-            _ => right,
+impl Change<ToLight<'_>> for Wrong<'_> {
+    fn fly<L: Lane>(
+        &self,
+        walk: &ToLight,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let inside = walk.fly(path, route, depth);
+        if self.bug == Bug::LastSegment {
+            // What is left is the last segment's.
+            path.shadow.found.scale_where(path.shadow.casts & inside, (-depth).exp());
         }
+        inside
     }
 
-    fn slant<L: Lane>(&self, cosine: L) -> L {
-        if *self == Self::Upright { cosine.each(1.0) } else { Right.slant(cosine) }
+    fn collide<L: Lane>(
+        &self,
+        walk: &ToLight,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (before, one, phase) = (*path, met.t.each(1.0), &walk.slab.phase);
+        let (casts, left) = (before.shadow.casts, !met.inside);
+        path.score = one.each(0.0);
+        let goes_on = walk.collide(path, route, met, random);
+        let begins = path.shadow.casts & !casts;
+        let shadow = &mut path.shadow;
+        let meets = begins & path.meets;
+        match self.bug {
+            Bug::ShadowTwice => path.score.scale_where(casts & left, before.shadow.found),
+            Bug::HitAlone => path.score.set_where(before.seeks & left, one),
+            Bug::NullsMissing => path.ratio.set_where(before.seeks, before.ratio),
+            Bug::LastSegment => {
+                let depth = flight_to_end(self.setup, met.t) / path.cosine;
+                shadow.found.set_where(begins, depth.exp());
+            }
+            Bug::CosineMissing => shadow.density.scale_where(begins, one / path.cosine),
+            Bug::Upright => path.cosine.set_where(begins, one),
+            Bug::Reversed => {
+                let turned = phase.value(-path.cosine) / phase.value(path.cosine);
+                shadow.density.scale_where(begins, turned);
+            }
+            Bug::AreasMixed => {
+                let density = phase.value(path.drawn) * (std::f64::consts::PI * 1.44);
+                path.ratio.set_where(meets, density);
+            }
+            Bug::PhaseAlone => path.ratio.set_where(meets, phase.value(path.drawn)),
+            Bug::None | Bug::BeamWeighted => {}
+        }
+        path.score = path.score + before.score;
+        goes_on
     }
 }

@@ -11,16 +11,19 @@
 //! lambertian       light from all sides: every distribution of starts but Lambert's changes lengths and counts
 //! ```
 
+use super::altered::{Altered, Change, Renumbered};
 use super::{Line, Mutant, On, family, filled, on, one_by_one};
+use estimators::Setup;
 use estimators::rod::walk::{self as rod, InRod, RuleAndRoulette};
 use estimators::slab::walk::{self as slab, InSlab};
-use estimators::space::{self, Particle, Splitting, Walked};
-use estimators::walks;
+use estimators::space::walk::{InSpace, State};
+use estimators::space::{Particle, Splitting, Tally, Walked, draws};
+use estimators::walks::{self, Route, TentativeCollision, Walk};
 use gate::CheckId;
-use media::phase::Phase;
-use numeric::Lane;
+use media::sampling::BothWays;
 use numeric::geometry::Point;
 use numeric::rng::Random;
+use numeric::{Kept, Lane, Mask};
 use theory::ParticleRule;
 use theory::ParticleRule::{Adaptive, Analog, NonTerminating, Terminating, Weighted};
 use theory::collisions::particle::EventProbabilities;
@@ -138,9 +141,9 @@ const UNDER_LIGHT: &[Line<Particle, Bug>] = &[
 pub fn in_rod() -> Vec<Mutant<Rod>> {
     family(IN_ROD, &Bug::None, |&right, &bug| {
         let Particle { rule, roulette, .. } = bug.particle(right);
-        let steps = Wrong(RuleAndRoulette { rule, roulette }, bug);
-        filled(move |setup, request| {
-            walks::in_turn(&InRod { rod: &setup.problem, steps }, setup, request);
+        filled(move |setup: &Setup<Rod>, request| {
+            let walk = InRod { rod: &setup.problem, steps: RuleAndRoulette { rule, roulette } };
+            walks::in_turn(&Altered { walk, change: bug }, setup, request);
         })
     })
 }
@@ -148,9 +151,10 @@ pub fn in_rod() -> Vec<Mutant<Rod>> {
 /// Mutants in a slab.
 pub fn in_slab() -> Vec<Mutant<Slab>> {
     family(IN_SLAB, &Bug::None, |&right, &bug| {
-        let steps = Wrong(bug.particle(right).rule, bug);
-        filled(move |setup, request| {
-            walks::in_turn(&InSlab::of(&setup.problem, steps), setup, request);
+        let rule = bug.particle(right).rule;
+        filled(move |setup: &Setup<Slab>, request| {
+            let walk = InSlab::of(&setup.problem, rule);
+            walks::in_turn(&Altered { walk, change: bug }, setup, request);
         })
     })
 }
@@ -172,8 +176,17 @@ pub fn under_light() -> Vec<Mutant<Lambertian>> {
 
 fn in_space<P: Walked>(lines: &[Line<Particle, Bug>]) -> Vec<Mutant<P>> {
     family(lines, &Bug::None, |&right, &bug| {
-        let steps = Wrong(bug.particle(right), bug);
-        one_by_one(move |setup, _, random| space::draw::<P, false>(steps, &steps.0, setup, random))
+        let particle = bug.particle(right);
+        one_by_one(move |setup: &Setup<P>, _, random| {
+            let world = (setup.problem.scene(), &*setup.fields);
+            match P::tally(setup, &particle) {
+                Ok(tally) => {
+                    let walk = InSpace::new(&tally, particle, world, &[]);
+                    draws::draw(&Altered { walk, change: bug }, random)
+                }
+                Err(draw) => draw,
+            }
+        })
     })
 }
 
@@ -186,139 +199,164 @@ impl Bug {
             _ => right,
         }
     }
-}
 
-/// Events of a walk, of which a bug makes one wrong.
-#[derive(Clone, Copy)]
-struct Wrong<S>(S, Bug);
-
-impl<S> Wrong<S> {
-    fn probabilities<L: Lane>(
-        &self,
-        right: EventProbabilities<L>,
+    /// The weight of a walk that goes on, given the right one, the one before the collision, the probabilities of events
+    /// and lanes that were scattered.
+    fn weight<L: Lane>(
+        self,
+        right: L,
+        before: L,
+        (events, scattered): (EventProbabilities<L>, L::Mask),
         albedo: L,
-    ) -> EventProbabilities<L> {
-        let EventProbabilities { scatter, scatter_weight, transmit_weight, .. } = right;
-        match self.1 {
-            Bug::AlbedoTwice | Bug::AnalogAndWeighted => {
-                EventProbabilities { scatter_weight: albedo * scatter_weight, ..right }
+    ) -> L {
+        let EventProbabilities { scatter, scatter_weight, transmit_weight, .. } = events;
+        match self {
+            Self::AlbedoTwice | Self::AnalogAndWeighted => {
+                L::select(scattered, right * albedo, right)
             }
-            Bug::AlbedoStraightOn => {
-                EventProbabilities { transmit_weight: albedo * transmit_weight, ..right }
-            }
-            Bug::SignLost => {
-                EventProbabilities { transmit_weight: transmit_weight.size(), ..right }
-            }
-            Bug::Undivided => {
-                EventProbabilities { scatter_weight: scatter * scatter_weight, ..right }
-            }
+            Self::AlbedoStraightOn => L::select(scattered, right, right * albedo),
+            Self::SignLost => L::select(scattered, right, right.size().with_sign_of(before)),
+            Self::Undivided => L::select(scattered, right * scatter, right),
+            Self::Uncompensated => before * L::select(scattered, scatter_weight, transmit_weight),
             _ => right,
         }
     }
+}
 
-    /// The weight of survivors of roulette.
-    fn played<L: Lane>(&self, before: L, after: L) -> L {
-        if self.1 == Bug::Uncompensated { before } else { after }
-    }
-
-    fn deflection<L: Lane>(&self, right: L) -> L {
-        if self.1 == Bug::Backward { -right } else { right }
+impl Change<InRod<'_>> for Bug {
+    fn collide<L: Lane>(
+        &self,
+        walk: &InRod,
+        particle: &mut rod::Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let before = *particle;
+        let goes_on = walk.collide(particle, route, met, random);
+        let scattered = before.order.below(particle.order);
+        let (albedo, forward) = (walk.rod.albedo.value(met.t), walk.rod.forward.value(met.t));
+        match self {
+            Self::OneNumber => {
+                particle.is_forward = before.is_forward ^ (scattered & forward.at_most(met.number));
+            }
+            Self::Backward => particle.is_forward ^= scattered,
+            _ => {}
+        }
+        let events = (walk.steps.rule.probabilities(met.ratio(), albedo), scattered);
+        let weight = self.weight(particle.weight, before.weight, events, albedo);
+        particle.weight.set_where(goes_on, weight);
+        goes_on
     }
 }
 
-impl rod::WalkEvents for Wrong<RuleAndRoulette> {
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        self.probabilities(rod::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
-    }
-
-    fn turns<L: Lane>(
+impl Change<InSlab<'_>> for Bug {
+    fn begin<L: Lane>(
         &self,
-        scattered: L::Mask,
-        forward: L,
-        decided: L,
+        walk: &InSlab,
+        one: L,
+        which: L::Mask,
         random: &mut impl Random<L>,
-    ) -> L::Mask {
-        match self.1 {
-            Bug::OneNumber => scattered & forward.at_most(decided),
-            Bug::Backward => scattered & random.uniform_where(scattered).below(forward),
-            _ => rod::WalkEvents::turns(&self.0, scattered, forward, decided, random),
+    ) -> slab::Particle<L> {
+        let mut particle = walk.begin(one, which, random);
+        if *self == Self::EvenLight {
+            // √(1 − u) becomes 1 − u.
+            particle.cosine = particle.cosine * particle.cosine;
         }
+        particle
     }
 
-    fn survive<L: Lane>(
+    fn fly<L: Lane>(
         &self,
-        goes_on: L::Mask,
-        weight: &mut L,
+        walk: &InSlab,
+        particle: &mut slab::Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        let slant = particle.cosine.size();
+        let depth = match self {
+            Self::Unslanted => depth / slant,
+            Self::SlantInverted => depth / (slant * slant),
+            _ => depth,
+        };
+        walk.fly(particle, route, depth)
+    }
+
+    fn collide<L: Lane>(
+        &self,
+        walk: &InSlab,
+        particle: &mut slab::Particle<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let before = *weight;
-        let survives = rod::WalkEvents::survive(&self.0, goes_on, weight, random);
-        *weight = self.played(before, *weight);
-        survives
+        let (before, is_backward) = (*particle, *self == Self::Backward);
+        let turns_from = if is_backward { -before.cosine } else { before.cosine };
+        particle.cosine = turns_from;
+        let goes_on = walk.collide(particle, route, met, random);
+        let scattered = !(particle.cosine - turns_from).equals(0.0);
+        particle.cosine.set_where(!scattered, before.cosine);
+        let albedo = met.t.each(walk.albedo);
+        let events = (walk.rule.probabilities(met.ratio(), albedo), scattered);
+        let weight = self.weight(particle.weight, before.weight, events, albedo);
+        particle.weight.set_where(goes_on, weight);
+        goes_on
     }
 }
 
-impl slab::WalkEvents for Wrong<ParticleRule> {
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        self.probabilities(slab::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
+impl<T: Tally> Change<InSpace<'_, T>> for Bug {
+    fn numbers<L: Lane>(
+        &self,
+        walk: &InSpace<T>,
+        state: &mut State<L, T::Found<L>>,
+        random: &mut impl Random<L>,
+    ) -> [L; 2] {
+        let (direction, turns) = (&mut state.path.flights.direction, state.scattered);
+        match self {
+            Self::AboutZ => direction.set_where(turns, Point([0.0, 0.0, 1.0]).each(direction[0])),
+            Self::Backward => direction.set_where(turns, direction.map(|along| -along)),
+            // The third number of a walk makes its cosine √(1 − u), which is 1 − v for u = 1 − (1 − v)².
+            Self::EvenLight if state.ended.any() => {
+                let even = |n, v: L| if n == 2 { v * (-v + 2.0) } else { v };
+                return walk.numbers(state, &mut Renumbered::new(random, even));
+            }
+            _ => {}
+        }
+        walk.numbers(state, random)
     }
 
-    fn descent<L: Lane>(&self, length: L, cosine: L) -> L {
-        match self.1 {
-            Bug::Unslanted => length,
-            Bug::SlantInverted => length / cosine.size(),
-            _ => slab::WalkEvents::descent(&self.0, length, cosine),
+    fn fly<L: Lane>(
+        &self,
+        walk: &InSpace<T>,
+        state: &mut State<L, T::Found<L>>,
+        route: &mut Route<impl BothWays<L>>,
+        depth: L,
+    ) -> L::Mask {
+        match self {
+            Self::StaleMajorant => walk.advance_through(state, depth, |_, begun| begun),
+            _ => walk.fly(state, route, depth),
         }
     }
 
-    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        self.deflection(slab::WalkEvents::deflection(&self.0, phase, number))
-    }
-
-    fn diffuse<L: Lane>(&self, number: L) -> L {
-        let right = slab::WalkEvents::diffuse(&self.0, number);
-        if self.1 == Bug::EvenLight { number.one_minus() } else { right }
-    }
-}
-
-impl space::WalkEvents for Wrong<Particle> {
-    fn probabilities<L: Lane>(&self, ratio: L, albedo: L) -> EventProbabilities<L> {
-        self.probabilities(space::WalkEvents::probabilities(&self.0, ratio, albedo), albedo)
-    }
-
-    fn survive<L: Lane>(
+    fn collide<L: Lane>(
         &self,
-        goes_on: L::Mask,
-        weight: &mut L,
+        walk: &InSpace<T>,
+        state: &mut State<L, T::Found<L>>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let before = *weight;
-        let survives = space::WalkEvents::survive(&self.0, goes_on, weight, random);
-        *weight = self.played(before, *weight);
-        survives
-    }
-
-    fn through<L: Lane>(&self, here: L, begun: L) -> L {
-        if self.1 == Bug::StaleMajorant { begun } else { here }
-    }
-
-    fn number<L: Lane>(&self, which: L::Mask, depth: L, random: &mut impl Random<L>) -> L {
-        if self.1 == Bug::NumberTwice {
-            return Lane::exp(-depth);
+        let weight = state.path.weight;
+        if *self == Self::NumberTwice {
+            let of_flight = |_, _| Lane::exp(-met.number);
+            return walk.collide(state, route, met, &mut Renumbered::new(random, of_flight));
         }
-        space::WalkEvents::number(&self.0, which, depth, random)
-    }
-
-    fn deflection<L: Lane>(&self, phase: &Phase, number: L) -> L {
-        self.deflection(space::WalkEvents::deflection(&self.0, phase, number))
-    }
-
-    fn axis<L: Lane>(&self, direction: [L; 3]) -> [L; 3] {
-        let up = Point([0.0, 0.0, 1.0]).each(direction[0]);
-        if self.1 == Bug::AboutZ { up } else { direction }
-    }
-
-    fn first_cosine<L: Lane>(&self, right: L, number: L) -> L {
-        if self.1 == Bug::EvenLight { number.one_minus() } else { right }
+        let goes_on = walk.collide(state, route, met, random);
+        let albedo = weight.each(walk.scene.albedo.even().unwrap_or(f64::NAN));
+        let ratio = met.in_space[0] / state.sampling;
+        let events = (walk.particle.rule.probabilities(ratio, albedo), state.scattered);
+        let weight = self.weight(state.path.weight, weight, events, albedo);
+        state.path.weight.set_where(goes_on, weight);
+        goes_on
     }
 }

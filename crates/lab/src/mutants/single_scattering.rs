@@ -7,11 +7,18 @@
 //!
 //! Such mistakes made single scattering too bright in pbrt-v3 (issue 69).
 
+use super::altered::{Altered, Change};
 use super::{Line, Mutant, On, family, on, one_by_one};
-use estimators::Setup;
-use estimators::single_scattering::plan::{Absorption, Vertices};
-use estimators::single_scattering::vertices::{Right, Vertex, WalkEvents};
+use estimators::single_scattering::points::{Absorption, Vertices};
+use estimators::single_scattering::ray_setup::RaySetup;
+use estimators::single_scattering::vertices::{Path, ToVertices, Vertex};
+use estimators::space::shadow::ShadowRays;
+use estimators::walks::{self, Route, TentativeCollision, Walk};
+use estimators::{Draw, Setup};
 use gate::CheckId;
+use media::Lookups;
+use media::sampling::BothWays;
+use numeric::rng::{Random, Stream};
 use numeric::{Lane, Span, elementary};
 use theory::light::Heuristic;
 use theory::problems::{Problem, SingleScattering};
@@ -88,77 +95,80 @@ const LINES: &[Line<Plan, Bug>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<SingleScattering>> {
-    family(LINES, &Bug::None, |&(plan, shadow), &bug| {
+    family(LINES, &Bug::None, |&plan, &bug| {
         one_by_one(move |setup, medium, random| {
-            plan.draw((Wrong { bug, setup }, shadow), setup, medium, random)
+            let wrong = Wrong { bug, setup };
+            match plan.0.collision {
+                Some(_) => wrong.draw::<true>(plan, medium, random),
+                None => wrong.draw::<false>(plan, medium, random),
+            }
         })
     })
 }
 
-/// Events of a walk, of which a bug makes one wrong.
+/// A walk with a bug.
 #[derive(Clone, Copy)]
 struct Wrong<'a> {
     bug: Bug,
     setup: &'a Setup<SingleScattering>,
 }
 
-impl WalkEvents for Wrong<'_> {
-    fn point<L: Lane>(&self, problem: &SingleScattering, number: L) -> L {
-        if self.bug == Bug::WrongEnd {
-            let angles = problem.angles();
-            return problem.at_angle(-(number * angles.length() + angles.from));
-        }
-        Right.point(problem, number)
+impl Wrong<'_> {
+    fn draw<const COLLIDES: bool>(
+        self,
+        (points, shadow): Plan,
+        medium: &Lookups,
+        random: &mut Stream,
+    ) -> Draw {
+        let Self { setup, .. } = self;
+        let volume = setup.problem.volume();
+        let rays = ShadowRays::new(volume, volume.bounds(), shadow);
+        let ground = RaySetup::new(setup, medium, &rays, &[]);
+        let walk = ToVertices::<true, COLLIDES>::new(ground, points);
+        let altered = Altered { walk, change: self };
+        walks::draw(&altered, &setup.fields.sampling, medium, random)
     }
 
-    fn depth<L: Lane>(&self, right: L, here: L, s: L) -> L {
-        let problem = &*self.setup.problem;
-        let (angles, begin) = (problem.angles(), problem.medium().support().from);
-        if self.bug != Bug::NumberTwice {
-            return right;
-        }
-        // The number that chose the point.
+    /// The optical depth whose random number is the one that chose a point.
+    fn depth_of_point<L: Lane>(&self, s: L) -> L {
+        let (problem, angles) = (&*self.setup.problem, self.setup.problem.angles());
         let number = s.map(|s| {
             let angle = elementary::atan((s - problem.foot()) / problem.distance());
             (angle - angles.from) / angles.length()
         });
-        let again = -L::ln(number.one_minus().or_more(s.each(f64::EPSILON)));
-        L::select(here.equals(begin), again, right)
+        -L::ln(number.one_minus().or_more(s.each(f64::EPSILON)))
     }
 
-    fn ends<L: Lane>(&self, real: L::Mask, scattered: L::Mask) -> L::Mask {
-        if self.bug == Bug::AbsorbedGoOn { scattered } else { real }
+    /// The transmittance from points to the light, through the field beyond the bounds of the volume, too.
+    fn beyond_bounds<L: Lane>(&self, s: L) -> L {
+        let problem = &self.setup.problem;
+        s.map(|s| {
+            problem.shadow(s).map_or(1.0, |(ray, _)| {
+                let whole = problem.volume().along(&ray, ray.span());
+                Lane::exp(-whole.optical_depth(ray.span()).value)
+            })
+        })
     }
 
-    fn light<L: Lane>(&self, right: L, s: L) -> L {
-        match self.bug {
-            Bug::ShadowTwice => right * right,
-            Bug::Unshadowed => right.each(1.0),
-            Bug::Unclipped => s.map(|s| {
-                let problem = &self.setup.problem;
-                problem.shadow(s).map_or(1.0, |(ray, _)| {
-                    let whole = problem.volume().along(&ray, ray.span());
-                    Lane::exp(-whole.optical_depth(ray.span()).value)
-                })
-            }),
-            _ => right,
-        }
-    }
-
-    fn score<L: Lane>(&self, vertex: Vertex<L>, score: impl Fn(Vertex<L>) -> L) -> L {
-        let Vertex { s, extinction, kept, is_chosen, .. } = vertex;
-        let (problem, one, right) = (&*self.setup.problem, s.each(1.0), score(vertex));
+    /// The score of a vertex, given a function with the right one of any.
+    fn score<L: Lane>(&self, vertex: Vertex<L>, right: impl Fn(Vertex<L>) -> L) -> L {
+        let Vertex { s, extinction, kept, is_chosen, light } = vertex;
+        let (problem, one, score) = (&*self.setup.problem, s.each(1.0), right(vertex));
         let density = problem.equiangular_density(s);
         let of_collisions =
-            |other: L| score(Vertex { kept: L::select(is_chosen, kept, other), ..vertex });
+            |other: L| right(Vertex { kept: L::select(is_chosen, kept, other), ..vertex });
+        let of_shadow = |light: L| right(Vertex { light, ..vertex });
         match self.bug {
-            Bug::Reversed => right * (problem.scattered(s, -problem.cosine(s)) / problem.source(s)),
-            Bug::PerAngle => right * density * problem.angles().length(),
+            Bug::ShadowTwice => of_shadow(light * light),
+            Bug::Unshadowed => of_shadow(one),
+            Bug::Unclipped => of_shadow(self.beyond_bounds(s)),
+            Bug::Reversed => score * (problem.scattered(s, -problem.cosine(s)) / problem.source(s)),
+            Bug::PerAngle => score * density * problem.angles().length(),
             // r² is D/(Δθ p).
             Bug::PerSolidAngle => {
-                right * density * problem.angles().length() / s.each(problem.distance())
+                score * density * problem.angles().length() / s.each(problem.distance())
             }
-            Bug::AlbedoTwice => right * problem.albedo(),
+            Bug::AlbedoTwice => score * problem.albedo(),
             Bug::NullsLeftOut => of_collisions(one),
             Bug::ScatteringIsNull => {
                 let sampling = self.setup.fields.sampling.single_value().unwrap_or(f64::NAN);
@@ -170,18 +180,74 @@ impl WalkEvents for Wrong<'_> {
                     s.map(|s| Lane::exp(-problem.medium().optical_depth(Span::new(from, s)).value));
                 // The densities take it; a point from the light is worth what was tracked.
                 let worth = L::select(is_chosen, kept / known, one);
-                score(Vertex { kept: known, ..vertex }) * worth
+                right(Vertex { kept: known, ..vertex }) * worth
             }
-            Bug::NothingScattered => right / L::select(is_chosen, extinction, one),
-            Bug::Averaged => right * 0.5,
+            Bug::NothingScattered => score / L::select(is_chosen, extinction, one),
+            Bug::Averaged => score * 0.5,
             Bug::SquaredWeights => {
                 let collision = extinction * problem.albedo() * kept;
                 let own = L::select(is_chosen, density, collision);
                 let other = L::select(is_chosen, collision, density);
                 let sum = own + other;
-                right * Heuristic::Power.shared(own, other) * own / (sum * sum)
+                score * Heuristic::Power.shared(own, other) * own / (sum * sum)
             }
-            _ => right,
+            _ => score,
         }
+    }
+}
+
+impl<const COLLIDES: bool> Change<ToVertices<'_, true, COLLIDES>> for Wrong<'_> {
+    fn numbers<L: Lane>(
+        &self,
+        walk: &ToVertices<true, COLLIDES>,
+        path: &mut Path<L>,
+        random: &mut impl Random<L>,
+    ) -> [L; 2] {
+        let begins = path.begins;
+        let numbers = walk.numbers(path, random);
+        if self.bug == Bug::WrongEnd {
+            // At the opposite angle.
+            path.s.set_where(begins, -path.s + 2.0 * self.setup.problem.foot());
+        }
+        numbers
+    }
+
+    fn fly<L: Lane>(
+        &self,
+        walk: &ToVertices<true, COLLIDES>,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        mut depth: L,
+    ) -> L::Mask {
+        if self.bug == Bug::NumberTwice {
+            depth.set_where(path.sets_out, self.depth_of_point(path.s));
+        }
+        walk.fly(path, route, depth)
+    }
+
+    fn collide<L: Lane>(
+        &self,
+        walk: &ToVertices<true, COLLIDES>,
+        path: &mut Path<L>,
+        route: &mut Route<impl BothWays<L>>,
+        met: &TentativeCollision<L>,
+        random: &mut impl Random<L>,
+    ) -> L::Mask {
+        let (before, mut met, one) = (*path, *met, met.t.each(1.0));
+        if self.bug == Bug::AbsorbedGoOn {
+            let threshold = met.number * route.here.sampling();
+            let scatters = threshold.below(met.extinction * self.setup.problem.albedo());
+            met.number.set_where(path.flies & !path.is_chosen & !scatters, one);
+        }
+        path.score = one.each(0.0);
+        let goes_on = walk.collide(path, route, &met, random);
+        let scored = !path.score.equals(0.0);
+        // What scored may have set out for its collision.
+        let mut scoring = *path;
+        scoring.is_chosen = before.is_chosen;
+        let vertex = walk.vertex(&scoring, scored, path.to_light.light);
+        path.score = before.score;
+        path.score.add_where(scored, self.score(vertex, |vertex| walk.value(vertex)));
+        goes_on
     }
 }
