@@ -141,7 +141,7 @@ fn an_optimum_is_called_one() {
     assert_eq!((kind(&rows[0]), rows[0].best_limit()), (Some(Kind::Optimum), None));
     // An estimator without σ̂ has no best σ̂.
     let none = (rows[1].best_sampling(), rows[1].best_fom(), kind(&rows[1]));
-    assert_eq!(none, (None, None, ""));
+    assert_eq!(none, (None, None, None));
 }
 
 #[test]

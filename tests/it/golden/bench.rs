@@ -106,7 +106,7 @@ fn case() -> BenchCase {
         problem: "transmittance".to_owned(),
         medium: "eq21".to_owned(),
         digest: "00ff".to_owned(),
-        swept: Some("sampling".to_owned()),
+        swept: Some(SweptQuantity::Sampling),
         rows: vec![
             refused,
             row("woodcock", Some(1.0), 32.0, 0.1875),
