@@ -67,7 +67,7 @@ fn every_page_that_a_file_may_name_shows_an_example_that_passes() {
             }
         }
     }
-    let rows = rows_of(judged(&cases, &options(1, 400_000)));
+    let rows = rows_of(judged(&cases, &options(1, 300_000)));
     for row in rows.iter().filter(|row| row.verdict != Some(Verdict::Pass)) {
         let (case, label, channel) = (&row.case.name, &row.experiment.label, &row.channel);
         let reason = &row.reason;
