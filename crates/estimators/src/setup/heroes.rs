@@ -64,17 +64,6 @@ impl Heroes {
         (0..count).map(|channel| self.probability(count, channel)).collect()
     }
 
-    /// Returns the hero among `count` channels that a uniform number chooses.
-    #[inline(always)]
-    pub fn choose(&self, count: usize, number: f64) -> usize {
-        let (mut hero, mut sum) = (0, self.probability(count, 0));
-        while number >= sum && hero + 1 < count {
-            hero += 1;
-            sum += self.probability(count, hero);
-        }
-        hero
-    }
-
     /// Requires one probability for each of `count` channels.
     ///
     /// # Errors

@@ -6,10 +6,7 @@ use super::{ChannelFields, Refusal};
 use media::catalogue::Settings;
 use media::phase::Phase;
 use numeric::digits::rounded;
-use theory::ParticleRule;
-use theory::collisions::particle::Event;
 use theory::colours::bound::{self, Reason, Unbounded};
-use theory::colours::chance::shares;
 use theory::colours::rates::Proposal;
 use theory::colours::{Chance, Chances};
 
@@ -22,38 +19,6 @@ pub enum Walker {
     Mis(Heroes),
     /// One walk of all channels, divided by the probabilities of its events: spectral tracking.
     SpectralTracking(Chances),
-}
-
-/// Probabilities of the events of a tentative collision.
-#[derive(Debug, Clone, Copy)]
-pub struct EventChances {
-    scattered: f64,
-    null: f64,
-    absorbed: f64,
-}
-
-impl EventChances {
-    /// The event that a uniform number chooses.
-    #[inline(always)]
-    pub fn decide(self, number: f64) -> Event {
-        if number < self.scattered {
-            Event::Scattered
-        } else if number < self.scattered + self.null {
-            Event::Transmitted
-        } else {
-            Event::Absorbed
-        }
-    }
-
-    /// Probability of an event.
-    #[inline(always)]
-    pub fn of(self, event: Event) -> f64 {
-        match event {
-            Event::Scattered => self.scattered,
-            Event::Transmitted => self.null,
-            Event::Absorbed => self.absorbed,
-        }
-    }
 }
 
 /// Kind of estimators that score one channel a draw, by the walk of a hero.
@@ -108,39 +73,6 @@ impl Walker {
             Some(heroes) => heroes.of(count),
             None => (0..count).map(|channel| if channel == 0 { 1.0 } else { 0.0 }).collect(),
         }
-    }
-
-    /// Number of the hero that a uniform number chooses; 0 without heroes.
-    #[inline(always)]
-    pub fn choose(&self, count: usize, number: impl FnOnce() -> f64) -> usize {
-        self.heroes().map_or(0, |heroes| heroes.choose(count, number()))
-    }
-
-    /// Probabilities of the events of a collision, given `σ_t/σ̂`, the albedo and the weight of each channel.
-    #[inline(always)]
-    pub fn chances(
-        &self,
-        hero: usize,
-        ratios: &[f64],
-        albedos: &[f64],
-        weights: &[f64],
-    ) -> EventChances {
-        let [null, scattered, absorbed] = if let Self::SpectralTracking(chances) = self {
-            chances.of_events(
-                ratios.len(),
-                #[inline(always)]
-                |channel| shares(ratios[channel], albedos[channel]),
-                weights,
-            )
-        } else {
-            let probabilities = ParticleRule::Analog.probabilities(ratios[hero], albedos[hero]);
-            [
-                probabilities.transmit,
-                probabilities.scatter,
-                1.0 - probabilities.scatter - probabilities.transmit,
-            ]
-        };
-        EventChances { scattered, null, absorbed }
     }
 
     /// Choice of events where all channels walk together.

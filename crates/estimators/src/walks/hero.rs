@@ -26,7 +26,7 @@ impl HeroDistribution {
         Self { count, before }
     }
 
-    /// The numbers of the channels that uniform numbers choose, as [`Heroes::choose`] does.
+    /// The numbers of the channels that uniform numbers choose.
     #[inline(always)]
     pub fn choose<L: Lane>(&self, number: L) -> L {
         let mut hero = number.each(0.0);
