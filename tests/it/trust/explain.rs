@@ -26,12 +26,15 @@ fn error(arguments: &[&str]) -> String {
 
 /// Returns every page that a case or a picture may name, with its part of the catalogue.
 fn pages() -> Vec<(String, Page)> {
-    let recipes = [("sampling", sampling::CATALOGUE), ("controls", controls::CATALOGUE)];
-    let others = [("phases", phase::CATALOGUE), ("problems", problems::CATALOGUE)];
-    let others = recipes.into_iter().chain(others).map(|(part, list)| (part.to_owned(), list));
-    let lists = built_in().into_iter().chain(others);
+    let others = [
+        ("sampling", sampling::CATALOGUE.pages),
+        ("controls", controls::CATALOGUE.pages),
+        ("phases", phase::CATALOGUE.pages),
+        ("problems", problems::CATALOGUE),
+    ];
+    let lists = built_in().into_iter().chain(others.map(|(part, pages)| (part.to_owned(), pages)));
     lists
-        .flat_map(|(part, list)| list.pages.iter().map(move |page| (part.clone(), *page)))
+        .flat_map(|(part, pages)| pages.iter().map(move |page| (part.clone(), *page)))
         .collect()
 }
 
@@ -70,7 +73,7 @@ fn every_page_that_a_file_may_name_shows_an_example_that_passes() {
     let rows = rows_of(judged(&cases, &options(1, 300_000)));
     for row in rows.iter().filter(|row| row.verdict != Some(Verdict::Pass)) {
         let (case, label, channel) = (&row.case.name, &row.experiment.label, &row.channel);
-        let reason = &row.reason;
+        let reason = row.reason();
         wrong.push(format!("{case}: {label} {channel}: {:?}, {reason}", row.verdict));
     }
     none(&wrong);
