@@ -29,7 +29,7 @@ use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::plan::Planned;
+use trueflight::plan::PlannedExperiment;
 
 /// Draws per experiment.
 const DRAWS: u64 = 2 * BLOCK;
@@ -142,7 +142,7 @@ fn kernels(plan: &Plan) {
 }
 
 /// Makes the draws of a block alone.
-fn bare(planned: &Planned, block: u64, buffer: &mut DrawBuffer) {
+fn bare(planned: &PlannedExperiment, block: u64, buffer: &mut DrawBuffer) {
     let Ok(ready) = &planned.outcome else { return };
     let mut streams = planned.streams(block);
     for _ in 0..BLOCK / DrawBuffer::LENGTH as u64 {

@@ -10,7 +10,7 @@
 
 use cpu_time::ProcessTime;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::draw::run;
 use trueflight::draw::store::{Header, Store};
 use trueflight::plan::Amount;
@@ -31,7 +31,7 @@ struct Pair {
 
 fn case(name: &str, text: &str) -> Case {
     let text = format!("title = \"t\"\n[problem.transmittance]\n{text}\n");
-    let source = Source { name: name.into(), path: format!("{name}.toml").into(), text };
+    let source = CaseText { name: name.into(), path: format!("{name}.toml").into(), text };
     Case::read(&source).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 

@@ -19,7 +19,7 @@ use trueflight::case::suite;
 use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::plan::Planned;
+use trueflight::plan::PlannedExperiment;
 
 /// Number of threads.
 const THREADS: usize = 2;
@@ -117,7 +117,7 @@ fn registers(_: usize, count: u64) {
 }
 
 /// Draws alone; threads take blocks in turn.
-fn bare(planned: &Planned, thread: usize, draws: u64) {
+fn bare(planned: &PlannedExperiment, thread: usize, draws: u64) {
     let Ok(ready) = &planned.outcome else { return };
     let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
     let mut left = usize::try_from(draws).expect("as many as fit into a window");

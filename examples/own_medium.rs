@@ -2,10 +2,10 @@
 
 use trueflight::OfCase;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::catalogue::{Domain, OwnPage, Page, Settings};
 use trueflight::geometry::{Aabb, Bounds, Point};
-use trueflight::judge::Choice;
+use trueflight::judge::ExperimentChoice;
 use trueflight::media::Stratified;
 use trueflight::media::own::SpaceFormula;
 use trueflight::numeric::{Known, Lane, Span};
@@ -56,7 +56,7 @@ pub fn main() {
         .with(OwnPage::layered::<Haze>(haze))
         .and_then(|catalogue| catalogue.with(OwnPage::volume(cube, &[], corner)))
         .expect("names that are free");
-    let source = Source { name: "haze".into(), path: "haze.toml".into(), text: CASE.into() };
+    let source = CaseText { name: "haze".into(), path: "haze.toml".into(), text: CASE.into() };
     let case: Case = catalogue.read(&source).unwrap_or_else(|error| panic!("{}", error.in_full()));
     // Ratio tracking through the haze at σ̂ = 1, as in a renderer; theory knows its variance.
     let tracking = |rng: &mut trueflight::rng::Stream| {
@@ -69,7 +69,7 @@ pub fn main() {
             weight *= 1.0 - 1.0 / (1.0 + (t / 2.0_f64).powi(2));
         }
     };
-    let ratio = Choice { estimator: "ratio", ..Choice::default() };
+    let ratio = ExperimentChoice { estimator: "ratio", ..ExperimentChoice::default() };
     let found = check("ratio tracking in haze", tracking).of_case(&case, &ratio).verdict();
     let found = found.unwrap_or_else(|error| panic!("{error}"));
     println!("{found}");

@@ -12,12 +12,12 @@ use fearless_simd::Level;
 use gate::stats::verdict::BLOCK;
 use rand_pcg::Pcg64;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
-use trueflight::plan::Planned;
+use trueflight::plan::PlannedExperiment;
 
 /// Number of rounds; the median counts.
 const ROUNDS: usize = 7;
@@ -193,7 +193,7 @@ fn case(contest: &Contest) -> Case {
     let text = format!(
         "title = \"{name}\"\n[problem.{problem}]\n{medium}\nestimators = [{{ {estimator} }}]"
     );
-    let source = Source { name: (*name).into(), path: "bench.toml".into(), text };
+    let source = CaseText { name: (*name).into(), path: "bench.toml".into(), text };
     Case::read(&source).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
@@ -206,7 +206,7 @@ fn of_textbook(draw: fn(&mut Pcg64) -> f64, round: u128) -> (f64, f64) {
     (begin.elapsed().as_secs_f64() / draws, sum / draws)
 }
 
-fn of_kernel(planned: &Planned, kernel: Kernel, round: u64) -> (f64, f64) {
+fn of_kernel(planned: &PlannedExperiment, kernel: Kernel, round: u64) -> (f64, f64) {
     let ready = planned.outcome.as_ref().expect("it is not refused");
     let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
     let (mut seconds, mut sum, mut draws) = (0.0, 0.0, 0);

@@ -38,7 +38,7 @@ pub const CATALOGUE: &[Page] = &[Page { module: "advise", source: include_str!("
 use crate::case::{CaseError, Spec};
 use costs::Prices;
 use media::catalogue::Page;
-use profile::Profile;
+use profile::SamplingProfile;
 use study::Study;
 use theory::collisions::Collisions;
 use theory::parallel;
@@ -59,7 +59,7 @@ pub enum Target {
 
 /// What is asked for.
 #[derive(Debug, Clone)]
-pub struct Request {
+pub struct AdviceRequest {
     /// Goal of the draws.
     pub target: Target,
     /// Costs of draws.
@@ -103,7 +103,7 @@ pub struct Advice {
     /// Rows, group by group, the best first.
     pub rows: Vec<Row>,
     /// The best σ̂ along the ray, of the best estimator with weights and of the best particle.
-    pub profiles: Vec<Profile>,
+    pub profiles: Vec<SamplingProfile>,
     /// Estimators that cannot be advised.
     pub refused: Vec<Refused>,
     /// Warning that the costs cannot be kept.
@@ -127,7 +127,7 @@ impl Advice {
 /// # Errors
 ///
 /// Mistakes in the case.
-pub fn advise(spec: &Spec, request: &Request) -> Result<Advice, CaseError> {
+pub fn advise(spec: &Spec, request: &AdviceRequest) -> Result<Advice, CaseError> {
     let (base, rays) = rays::read(spec, request.rays, request.seed)?;
     let listed = candidates::listed(&base, &rays)?;
     let mut prices = Prices::open(&request.costs, &base.spec);

@@ -33,7 +33,7 @@ const GAIN: f64 = 1e-7;
 
 /// The best σ̂ along a ray, in steps.
 #[derive(Debug, Clone)]
-pub struct Profile {
+pub struct SamplingProfile {
     /// Estimator.
     pub estimator: String,
     /// Ends of the steps.
@@ -55,7 +55,7 @@ pub fn of(
     rows: &[Row],
     row: &Row,
     rule: Collisions,
-) -> Option<(Profile, Candidate)> {
+) -> Option<(SamplingProfile, Candidate)> {
     let (case, candidate) = (&study.cases[0], &study.candidates[row.candidate]);
     let (price, (_, start)) = (study.prices[row.candidate]?, row.setting?);
     let medium = &case.scenario.media()[0];
@@ -95,7 +95,7 @@ pub fn of(
         let t = place(i / 4, (i % 4) as f64 / 4.0 + 0.125);
         [t, residual(t).abs()]
     });
-    let profile = Profile {
+    let profile = SamplingProfile {
         estimator: row.estimator.clone(),
         over_constant: constant / own,
         over_local: local.map(|local| local / own),
@@ -119,7 +119,7 @@ pub struct Steps {
 
 /// Contribution of a step to V·cost.
 #[derive(Clone, Copy)]
-struct Share {
+struct StepShare {
     /// `∫ σ̂ E[(1 − W)²]` over the step; infinite where the rule does not exist.
     loss: f64,
     /// Probability that a walk which begins the step survives it.
@@ -163,7 +163,7 @@ impl Steps {
     fn of_particle(&self, rule: &Single, start: f64) -> Vec<f64> {
         let (least, roots) = (MIN_SHARE * start, self.roots());
         let mut sampling = vec![start; self.residual.len()];
-        let mut shares: Vec<Share> =
+        let mut shares: Vec<StepShare> =
             (0..sampling.len()).map(|step| self.share(rule, step, start)).collect();
         let mut last = self.of(shares.iter().copied());
         for _ in 0..PASSES {
@@ -196,7 +196,7 @@ impl Steps {
     }
 
     /// `(e^J − 1)(a + b C)`.
-    fn of(&self, shares: impl Iterator<Item = Share>) -> f64 {
+    fn of(&self, shares: impl Iterator<Item = StepShare>) -> f64 {
         let (mut loss, mut lookups, mut alive) = (0.0, 0.0, 1.0);
         for share in shares {
             loss += share.loss;
@@ -207,7 +207,7 @@ impl Steps {
     }
 
     /// Returns the contribution of a step.
-    fn share(&self, rule: &dyn Rule, step: usize, sampling: f64) -> Share {
+    fn share(&self, rule: &dyn Rule, step: usize, sampling: f64) -> StepShare {
         let share = self.width / self.residual[step].len() as f64;
         let [loss, death] = self.residual[step].iter().fold([0.0; 2], |[j, d], residual| {
             let ratio = residual / sampling;
@@ -220,6 +220,6 @@ impl Steps {
         });
         // Mean share of the step that is flown.
         let flown = if death.abs() < 1e-8 { 1.0 - 0.5 * death } else { -(-death).exp_m1() / death };
-        Share { loss, survival: (-death).exp(), lookups: sampling * self.width * flown }
+        StepShare { loss, survival: (-death).exp(), lookups: sampling * self.width * flown }
     }
 }

@@ -2,12 +2,12 @@
 
 use super::Target;
 use super::costs::{Prices, Wanted};
-use super::score::Score;
+use super::score::CandidateScore;
 use super::study::{Best, Study};
 use crate::case::sweep::{SweptQuantity, Variation};
 use estimators::Knowledge;
 use numeric::digits::number;
-use theory::prediction::search::{BEYOND, Kind, MAX_FACTOR, UNKNOWN};
+use theory::prediction::search::{BEYOND, MAX_FACTOR, PlaceKind, UNKNOWN};
 
 /// Difference of two times that is a tie, with exact costs: settings are searched to this accuracy.
 const TIE: f64 = 1e-3;
@@ -67,9 +67,9 @@ pub struct Row {
     /// Control in words; empty for none.
     pub control: String,
     /// Kind of the setting.
-    pub kind: Kind,
+    pub kind: PlaceKind,
     /// Variance and cost of a draw.
-    pub score: Score,
+    pub score: CandidateScore,
     /// Cost to the target error, or the squared error within the budget: rows are ranked by it.
     pub goal: f64,
     /// Cost to the target error, or the budget.
@@ -143,7 +143,7 @@ impl Row {
     }
 
     /// Sets the score, and what follows from it.
-    fn weigh(&mut self, score: Score, target: Target) {
+    fn weigh(&mut self, score: CandidateScore, target: Target) {
         let goal = score.goal(target);
         (self.time, self.error) = match target {
             Target::Error(_) => (goal, if goal > 0.0 { (score.work / goal).sqrt() } else { 0.0 }),

@@ -11,7 +11,7 @@ const BIAS: f64 = 1e-9;
 
 /// Variance and cost of a candidate at one setting, means over the rays.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Score {
+pub struct CandidateScore {
     /// Variance of a draw relative to the squared mean transmittance.
     pub variance: f64,
     /// Relative variance times cost: the cost at a relative error of 1.
@@ -30,7 +30,7 @@ pub struct Score {
     pub is_bound: bool,
 }
 
-impl Score {
+impl CandidateScore {
     /// Returns the relative standard deviation of a draw, root mean square over the rays.
     pub fn deviation(&self) -> f64 {
         self.variance.sqrt()

@@ -5,16 +5,16 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use super::Request;
+use super::AdviceRequest;
 use super::candidates::{self, Candidate};
 use super::costs::{Price, Prices};
-use super::score::{Score, relative_variance, weights};
+use super::score::{CandidateScore, relative_variance, weights};
 use crate::case::sweep::{SweptQuantity, Variation};
 use crate::case::{Case, CaseError};
 use estimators::Refusal;
 use media::Body;
 use theory::collisions::Collisions;
-use theory::prediction::search::{ABOVE_LIMIT, BEYOND, Goal, Kind, Least, UNKNOWN, up};
+use theory::prediction::search::{ABOVE_LIMIT, BEYOND, Goal, Least, PlaceKind, UNKNOWN, up};
 use theory::{Moments, Prediction, parallel};
 
 /// Number of rays on which settings are searched; the answer is then evaluated on all of them.
@@ -45,7 +45,7 @@ pub type Setting = (usize, Variation);
 /// Candidates on the rays of a medium.
 pub struct Study<'a> {
     /// Question.
-    pub request: &'a Request,
+    pub request: &'a AdviceRequest,
     /// Candidates.
     pub candidates: Vec<Candidate>,
     /// One case for each ray, with the candidates in its list.
@@ -72,7 +72,7 @@ pub struct Best<'a> {
     /// Cost to the goal on the probes, or the squared error within a budget.
     pub value: f64,
     /// Kind of the setting.
-    pub kind: Kind,
+    pub kind: PlaceKind,
     /// Cost to the goal on the probes as a function of the free quantity.
     pub goal: Goal<'a>,
 }
@@ -87,7 +87,7 @@ impl<'a> Study<'a> {
         base: &Case,
         rays: &[Body],
         candidates: Vec<Candidate>,
-        request: &'a Request,
+        request: &'a AdviceRequest,
         market: &mut Prices,
     ) -> Result<Self, CaseError> {
         let spec = candidates::replaced(&base.spec, &candidates);
@@ -209,9 +209,9 @@ impl<'a> Study<'a> {
         candidate: usize,
         rays: &[usize],
         predict: impl Fn((usize, u64)) -> Option<Prediction>,
-    ) -> Option<Score> {
+    ) -> Option<CandidateScore> {
         let price = self.prices[candidate]?;
-        let mut score = Score::default();
+        let mut score = CandidateScore::default();
         let is_learned = self.cases.len() == 1 && self.learns(candidate);
         let seeds = if is_learned { SEEDS } else { 1 };
         let share = 1.0 / (rays.len() as f64 * seeds as f64);
@@ -243,7 +243,7 @@ impl<'a> Study<'a> {
     }
 
     /// Returns the score of a candidate over all rays.
-    pub fn score_of_all(&self, setting: Setting) -> Option<Score> {
+    pub fn score_of_all(&self, setting: Setting) -> Option<CandidateScore> {
         let rays: Vec<usize> = (0..self.cases.len()).collect();
         self.score(setting.0, &rays, |place| self.predict(setting, place))
     }
@@ -305,7 +305,7 @@ impl<'a> Study<'a> {
         let near = all.into_iter().filter(|(_, (own, _))| own.value <= least * (1.0 + ABOVE_LIMIT));
         let near = near.map(|(candidate, (least, goal))| {
             let (setting, value, kind) = match self.free[candidate] {
-                None => (None, least.value, Kind::Fixed),
+                None => (None, least.value, PlaceKind::Fixed),
                 Some(Free { what, .. }) => {
                     let (x, value, kind) = goal.settled(least);
                     (Some((what, x)), value, kind)
@@ -341,7 +341,7 @@ impl<'a> Study<'a> {
 
     /// Returns a setting that is allowed on all rays, not only on the probes, with its score; `None` if no setting up to
     /// twice the given one is allowed.
-    pub fn on_all(&self, best: &Best) -> Option<(Variation, Score)> {
+    pub fn on_all(&self, best: &Best) -> Option<(Variation, CandidateScore)> {
         let tries = if best.setting.is_some() { &RAISES[..] } else { &RAISES[..1] };
         tries.iter().find_map(|factor| {
             let setting = best.setting.map(|(what, x)| (what, up(x * factor)));

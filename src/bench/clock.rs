@@ -12,8 +12,8 @@ use fearless_simd::Level;
 use gate::stats::verdict::BLOCK;
 use serde::{Deserialize, Serialize};
 
-use super::curve::Sample;
-use crate::plan::Planned;
+use super::curve::BenchDraws;
+use crate::plan::PlannedExperiment;
 use estimators::{DrawBuffer, Kernel};
 
 /// Clock of the times.
@@ -82,7 +82,13 @@ pub struct Stopwatch {
 impl Stopwatch {
     /// Times a round of an experiment; `sample` absorbs its draws. Rounds make different draws; the ways of drawing
     /// make the same draws.
-    pub fn lap(&self, planned: &Planned, round: u32, draws: u64, sample: &mut Sample) -> Lap {
+    pub fn lap(
+        &self,
+        planned: &PlannedExperiment,
+        round: u32,
+        draws: u64,
+        sample: &mut BenchDraws,
+    ) -> Lap {
         let mut lap = Lap { single: 0.0, together: None, plain: 0.0 };
         let mut ways = [Way::Packets, Way::Together, Way::Plain];
         if round % 2 == 1 {
@@ -112,7 +118,7 @@ impl Stopwatch {
     /// Returns the seconds per draw on this thread; `look` receives each buffer, untimed.
     fn alone(
         &self,
-        planned: &Planned,
+        planned: &PlannedExperiment,
         kernel: Kernel,
         (round, draws): (u32, u64),
         mut look: impl FnMut(&DrawBuffer),
@@ -129,7 +135,7 @@ impl Stopwatch {
 
     /// Returns the seconds per draw on all threads of the pool. Each thread adds the same number of draws to the work,
     /// and a free thread takes the next block, as in a run. The clock starts when all threads are awake.
-    fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
+    fn together(&self, planned: &PlannedExperiment, round: u32, draws: u64) -> f64 {
         let (kernel, threads) = (Kernel::Packets(self.level), self.threads as u64);
         let (blocks, each) = (threads * draws.div_ceil(BLOCK), draws.min(BLOCK));
         let first = u64::from(round) * blocks;
@@ -165,7 +171,7 @@ enum Way {
 }
 
 /// Returns a buffer that has been filled once.
-fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
+fn warm(planned: &PlannedExperiment, kernel: Kernel, draws: u64) -> DrawBuffer {
     let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
     let mut buffer = DrawBuffer::new(channels);
     let draws = draws.min(DrawBuffer::length(channels) as u64);
@@ -175,7 +181,7 @@ fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
 
 /// Calls `f` for each buffer of the draws from block `first` on, with a function that fills the buffer.
 fn each_buffer(
-    planned: &Planned,
+    planned: &PlannedExperiment,
     kernel: Kernel,
     (first, draws): (u64, u64),
     mut f: impl FnMut(&mut dyn FnMut(&mut DrawBuffer)),

@@ -7,7 +7,7 @@
 //! Rounds are independent, so that the error over several is smoother than |mean − T| of one. Where
 //! theory has a variance, it should follow √(V/n).
 
-use crate::plan::Planned;
+use crate::plan::PlannedExperiment;
 use estimators::DrawBuffer;
 use gate::stats::Tally;
 
@@ -16,7 +16,7 @@ const FIRST: u64 = 64;
 
 /// Draws of all rounds.
 #[derive(Debug, Clone)]
-pub struct Sample {
+pub struct BenchDraws {
     /// Numbers of draws at which the error is looked at.
     pub looks: Vec<u64>,
     /// One entry per channel.
@@ -51,9 +51,9 @@ pub struct Error {
     pub most: f64,
 }
 
-impl Sample {
+impl BenchDraws {
     /// Returns an empty sample for an experiment that makes this number of draws in a round.
-    pub fn of(planned: &Planned, draws: u64) -> Self {
+    pub fn of(planned: &PlannedExperiment, draws: u64) -> Self {
         let truths = planned.outcome.as_ref().map_or_else(
             |_| Vec::new(),
             |ready| ready.prediction.channels.iter().map(|channel| channel.truth.value).collect(),
@@ -144,7 +144,7 @@ mod tests {
         let values: Vec<f64> = (0..200_u32).map(|i| 2.0 + f64::from(i % 7)).collect();
         let mean = |n: usize| values[..n].iter().sum::<f64>() / n as f64;
         for length in [200, 64, 37] {
-            let mut sample = Sample::about(&[2.0], 200);
+            let mut sample = BenchDraws::about(&[2.0], 200);
             assert_eq!(sample.looks, [64, 128, 200]);
             sample.begin();
             values.chunks(length).for_each(|chunk| sample.absorb(&buffer(chunk)));
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn the_error_of_several_rounds_is_the_root_of_the_mean_square() {
-        let mut sample = Sample::about(&[1.0], 2);
+        let mut sample = BenchDraws::about(&[1.0], 2);
         for values in [[1.3, 1.3], [0.6, 0.6]] {
             sample.begin();
             sample.absorb(&buffer(&values));

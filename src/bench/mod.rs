@@ -26,9 +26,9 @@ use std::time::Instant;
 use fearless_simd::Level;
 
 use self::clock::{Clock, Lap, Stopwatch};
-use self::curve::Sample;
+use self::curve::BenchDraws;
 use self::record::{Bench, BenchCase, Conditions, Spread};
-use crate::plan::{Plan, Planned, PlannedCase};
+use crate::plan::{Plan, PlannedCase, PlannedExperiment};
 use numeric::pack;
 
 /// Amount of draws that are timed, and the hardware.
@@ -51,10 +51,10 @@ pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
     let threads = rayon::current_num_threads();
     let stopwatch = Stopwatch { clock: Clock::of(threads), level: amounts.level, threads };
     let all = plan.experiments().map(|(case, planned)| {
-        let sample = Sample::of(planned, amounts.draws);
-        Measured { case, planned, laps: Vec::new(), sample }
+        let sample = BenchDraws::of(planned, amounts.draws);
+        TimedExperiment { case, planned, laps: Vec::new(), sample }
     });
-    let mut all: Vec<Measured> = all.collect();
+    let mut all: Vec<TimedExperiment> = all.collect();
     for round in 0..amounts.rounds {
         for one in all.iter_mut().filter(|one| one.planned.outcome.is_ok()) {
             one.laps.push(stopwatch.lap(one.planned, round, amounts.draws, &mut one.sample));
@@ -83,15 +83,15 @@ pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
 }
 
 /// Experiment with its times and draws.
-struct Measured<'p> {
+struct TimedExperiment<'p> {
     case: &'p PlannedCase<'p>,
-    planned: &'p Planned,
+    planned: &'p PlannedExperiment,
     /// Times of each round; empty for a refused experiment.
     laps: Vec<Lap>,
-    sample: Sample,
+    sample: BenchDraws,
 }
 
-fn case_of(measured: &[Measured]) -> BenchCase {
+fn case_of(measured: &[TimedExperiment]) -> BenchCase {
     let case = measured[0].case.case;
     let mut rows: Vec<_> = measured.iter().flat_map(rows::of).collect();
     rows::choose(&mut rows);

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
-use super::stored::Comparison;
+use super::stored::BenchComparison;
 use crate::case::id::ExperimentId;
 use crate::case::sweep::SweptQuantity;
 use crate::record::Digits;
@@ -27,7 +27,7 @@ pub struct Bench {
     /// The cases, in the order they were given.
     pub cases: Vec<BenchCase>,
     /// Changes since a stored bench, if the bench was compared with one.
-    pub comparison: Option<Comparison>,
+    pub comparison: Option<BenchComparison>,
 }
 
 /// Conditions of the timing.

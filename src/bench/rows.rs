@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::Measured;
+use super::TimedExperiment;
 use super::clock::Lap;
-use super::curve::{ChannelSample, Sample};
+use super::curve::{BenchDraws, ChannelSample};
 use super::record::{BenchRow, CurvePoint, ERRORS, Spread, Times, efficiency, time_to};
-use crate::plan::Planned;
+use crate::plan::PlannedExperiment;
 use estimators::Knowledge;
 use theory::Channel;
 use theory::prediction::CERTAIN;
@@ -21,13 +21,13 @@ fn spread(laps: &[Lap], figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
     Spread::of(figures).filter(|_| is_told)
 }
 
-fn named(planned: &Planned) -> BenchRow {
+fn named(planned: &PlannedExperiment) -> BenchRow {
     let (id, needs) = (planned.id.clone(), Knowledge::list(&planned.needs));
     BenchRow { id, listed: planned.estimator, needs, ..BenchRow::default() }
 }
 
 /// Returns the rows of an experiment, one per channel, or one row that says why it cannot be drawn.
-pub fn of(Measured { planned, laps, sample, .. }: &Measured) -> Vec<BenchRow> {
+pub fn of(TimedExperiment { planned, laps, sample, .. }: &TimedExperiment) -> Vec<BenchRow> {
     let ready = match &planned.outcome {
         Ok(ready) => ready,
         Err(refusal) => {
@@ -99,7 +99,7 @@ fn known_variance(
 }
 
 fn curve(
-    sample: &Sample,
+    sample: &BenchDraws,
     drawn: &ChannelSample,
     (truth, variance): (f64, Option<f64>),
     lookups: Option<f64>,

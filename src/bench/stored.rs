@@ -104,7 +104,7 @@ impl Stored {
 
 /// Comparison of two benches.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Comparison {
+pub struct BenchComparison {
     /// Name of the stored bench.
     pub name: String,
     /// Relative increase of the time that is no regression.
@@ -112,7 +112,7 @@ pub struct Comparison {
     /// Number of experiments that were compared.
     pub compared: usize,
     /// Experiments that became slower or faster.
-    pub changes: Vec<Change>,
+    pub changes: Vec<TimeChange>,
     /// Experiments of this bench that the stored one has not.
     pub added: Vec<ExperimentId>,
     /// Experiments of the stored bench that this one has not.
@@ -125,7 +125,7 @@ pub struct Comparison {
 
 /// A time per draw that changed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Change {
+pub struct TimeChange {
     /// The experiment.
     pub id: ExperimentId,
     /// Nanoseconds of a draw, stored and now.
@@ -138,7 +138,7 @@ pub struct Change {
     pub is_regression: bool,
 }
 
-impl Comparison {
+impl BenchComparison {
     /// Returns whether anything became slower.
     pub fn fails(&self) -> bool {
         self.changes.iter().any(|change| change.is_regression)
@@ -151,11 +151,11 @@ impl Comparison {
 }
 
 /// Compares a bench with the stored one called `name`.
-pub fn compare(name: &str, stored: &Stored, now: &Stored, tolerance: f64) -> Comparison {
+pub fn compare(name: &str, stored: &Stored, now: &Stored, tolerance: f64) -> BenchComparison {
     let place = |timed: &'_ Timed| (timed.id.clone(), timed.case.clone());
     let Matches { pairs, added, missing, rewritten } =
         Matches::of(&stored.timed, &now.timed, place);
-    Comparison {
+    BenchComparison {
         name: name.to_owned(),
         tolerance,
         compared: pairs.len(),
@@ -168,12 +168,12 @@ pub fn compare(name: &str, stored: &Stored, now: &Stored, tolerance: f64) -> Com
 }
 
 /// Returns a change beyond both sides' rounds and the tolerance.
-fn change(stored: &Timed, now: &Timed, tolerance: f64) -> Option<Change> {
+fn change(stored: &Timed, now: &Timed, tolerance: f64) -> Option<TimeChange> {
     let (before, after) = (stored.ns_per_draw, now.ns_per_draw);
     let ratio = after.median / before.median;
     let is_regression = after.least > before.most && ratio > 1.0 + tolerance;
     let is_improvement = after.most < before.least && ratio * (1.0 + tolerance) < 1.0;
-    (is_regression || is_improvement).then(|| Change {
+    (is_regression || is_improvement).then(|| TimeChange {
         id: now.id.clone(),
         ns_per_draw: [before, after],
         speedup: [stored.speedup, now.speedup],

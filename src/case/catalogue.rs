@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::case::spec::{CaseError, Source};
+use crate::case::spec::{CaseError, CaseText};
 use crate::case::{Case, suite};
 use estimators::{self, Estimated};
 use media;
@@ -86,7 +86,7 @@ impl Catalogue {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read(&self, source: &Source) -> Result<Case, CaseError> {
+    pub fn read(&self, source: &CaseText) -> Result<Case, CaseError> {
         Case::read_with(source, &self.own_pages)
     }
 
@@ -115,7 +115,7 @@ impl Catalogue {
             match files(path.as_ref()) {
                 Ok(files) => {
                     for file in files {
-                        match Source::read(&file).and_then(|source| self.read(&source)) {
+                        match CaseText::read(&file).and_then(|source| self.read(&source)) {
                             Ok(case) => cases.push(case),
                             Err(error) => errors.push(error),
                         }
@@ -133,10 +133,10 @@ impl Catalogue {
 /// # Errors
 ///
 /// No such file or case, or a file that cannot be read.
-pub fn source(name: &str) -> Result<Source, CaseError> {
+pub fn source(name: &str) -> Result<CaseText, CaseError> {
     let path = Path::new(name);
     match suite::find(name) {
-        _ if path.exists() => Source::read(path),
+        _ if path.exists() => CaseText::read(path),
         Some(source) => Ok(source),
         None => {
             let names: Vec<String> = suite::suite().into_iter().map(|source| source.name).collect();

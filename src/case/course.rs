@@ -40,7 +40,7 @@ impl Course {
 const PLACES: usize = 99;
 
 /// Fields of a channel, as far as they could be made.
-pub(super) struct Fields<'a> {
+pub(super) struct ChannelFields<'a> {
     /// σ_t.
     pub(super) medium: &'a Medium,
     /// σ_c.
@@ -49,7 +49,7 @@ pub(super) struct Fields<'a> {
     pub(super) sampling: Option<&'a Piecewise>,
 }
 
-impl Fields<'_> {
+impl ChannelFields<'_> {
     /// Returns the values along the ray and at a place of interest; `None` on a ray of infinite length.
     pub(super) fn course(&self, at: Option<f64>) -> Option<Course> {
         let (span, support) = (self.medium.span(), self.medium.support());

@@ -49,7 +49,7 @@ pub use build::Ready;
 pub use catalogue::Catalogue;
 pub use course::Course;
 pub use scenario::{Scenario, ScenarioAtPoint};
-pub use spec::{CaseError, Source, Spec};
+pub use spec::{CaseError, CaseText, Spec};
 
 /// The manual of case files.
 pub const CATALOGUE: &[Page] =
@@ -107,7 +107,7 @@ impl Case {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read(source: &Source) -> Result<Self, CaseError> {
+    pub fn read(source: &CaseText) -> Result<Self, CaseError> {
         Self::read_with(source, &own_pages::NONE)
     }
 
@@ -116,7 +116,7 @@ impl Case {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read_with(source: &Source, own_pages: &OwnPages) -> Result<Self, CaseError> {
+    pub fn read_with(source: &CaseText, own_pages: &OwnPages) -> Result<Self, CaseError> {
         Self::of(&Spec::parse(source, own_pages)?)
     }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::case::Case;
 use crate::case::build::{AnyProblem, ProblemKind, Ready, refuse_what_cannot_be_computed};
-use crate::case::course::{Course, Fields};
+use crate::case::course::{ChannelFields, Course};
 use crate::case::estimator::{Defaults, Estimators};
 use crate::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
 use crate::case::sweep::{SweptQuantity, Variation};
@@ -444,7 +444,7 @@ impl<'a> ScenarioAtPoint<'a> {
         let parts = self.parts(estimator, None, address).ok();
         let parts = parts.as_ref().map(|(parts, _)| parts);
         let media = scenario.media().iter().enumerate();
-        let fields = media.map(|(channel, medium)| Fields {
+        let fields = media.map(|(channel, medium)| ChannelFields {
             medium,
             control: parts.map(|parts| &parts.control),
             sampling: parts.and_then(|parts| parts.channels[channel].1.as_ref()),

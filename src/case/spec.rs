@@ -24,7 +24,7 @@ use numeric::digits::counted;
 /// Parsed case or picture.
 #[derive(Debug, Clone)]
 pub struct Spec {
-    source: Source,
+    source: CaseText,
     root: Vec<Entry>,
     /// Mistakes in short forms.
     faults: Vec<Fault>,
@@ -43,7 +43,7 @@ impl Spec {
     /// # Errors
     ///
     /// The text is not TOML.
-    pub fn parse(source: &Source, own_pages: &OwnPages) -> Result<Self, CaseError> {
+    pub fn parse(source: &CaseText, own_pages: &OwnPages) -> Result<Self, CaseError> {
         let faults = RefCell::default();
         let mut root = source.parse(&faults);
         if !faults.borrow().is_empty() {
@@ -57,7 +57,7 @@ impl Spec {
     }
 
     /// Returns the text that it was parsed from.
-    pub fn source(&self) -> &Source {
+    pub fn source(&self) -> &CaseText {
         &self.source
     }
 
@@ -138,7 +138,7 @@ impl Spec {
             name: self.source.name.clone(),
             cause: Box::new(cause),
         })?;
-        Self::parse(&Source { text, ..self.source.clone() }, &self.own_pages)
+        Self::parse(&CaseText { text, ..self.source.clone() }, &self.own_pages)
     }
 }
 
@@ -164,24 +164,24 @@ pub struct BuiltIn {
 
 impl BuiltIn {
     /// Returns all files, in order.
-    pub fn all(self) -> Vec<Source> {
+    pub fn all(self) -> Vec<CaseText> {
         self.files.iter().map(|file| self.source(file)).collect()
     }
 
     /// Returns the file of a name.
-    pub fn find(self, name: &str) -> Option<Source> {
+    pub fn find(self, name: &str) -> Option<CaseText> {
         self.files.iter().find(|file| file.0 == name).map(|file| self.source(file))
     }
 
-    fn source(self, (name, text): &(&str, &str)) -> Source {
+    fn source(self, (name, text): &(&str, &str)) -> CaseText {
         let path = PathBuf::from(format!("{}{name}.toml", self.folder));
-        Source { name: (*name).to_owned(), path, text: (*text).to_owned() }
+        CaseText { name: (*name).to_owned(), path, text: (*text).to_owned() }
     }
 }
 
 /// The text of a case file and where it came from.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub struct CaseText {
     /// The case's name, as in `transmittance/eq21-sweep`.
     pub name: String,
     /// The file, or the name of a case built into the binary.
@@ -234,7 +234,7 @@ pub enum CaseError {
     #[error("{} in {}", counted(faults.len() as u64, "mistake"), source_text.path.display())]
     Faulty {
         /// The file.
-        source_text: Source,
+        source_text: CaseText,
         /// Every mistake found, in the order of the file.
         faults: Vec<Fault>,
     },
@@ -284,7 +284,7 @@ impl CaseError {
     }
 }
 
-impl Source {
+impl CaseText {
     /// Reads a file; its name is its path below a folder called `cases`, or its file name, wherever it
     /// is read from.
     ///

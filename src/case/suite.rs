@@ -1,6 +1,6 @@
 //! Cases that are built into the binary: a choice of those under `cases/` and `tests/cases/`, one line each.
 
-use crate::case::spec::{BuiltIn, Source};
+use crate::case::spec::{BuiltIn, CaseText};
 
 /// Lists built-in cases by their path below `cases/`, without `.toml`; `in "tests/"` means `tests/cases/`.
 macro_rules! cases {
@@ -93,16 +93,16 @@ const CALIBRATION: BuiltIn = cases![
 ];
 
 /// Returns the cases that test the gate itself.
-pub fn calibration() -> Vec<Source> {
+pub fn calibration() -> Vec<CaseText> {
     CALIBRATION.all()
 }
 
 /// Returns every built-in case, in the order of the suite.
-pub fn suite() -> Vec<Source> {
+pub fn suite() -> Vec<CaseText> {
     CASES.all()
 }
 
 /// Returns the built-in case of a name.
-pub fn find(name: &str) -> Option<Source> {
+pub fn find(name: &str) -> Option<CaseText> {
     CASES.find(name).or_else(|| CALIBRATION.find(name))
 }

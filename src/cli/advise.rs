@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::output::{self, Errors, Format};
+use super::output::{self, Errors, RowFormat};
 use super::selection::{Seed, Threads};
 use super::{Console, numbers};
 use crate::advise::options::{self, Budget};
-use crate::advise::{Costs, Request, advise, rays::MAX_RAYS};
+use crate::advise::{AdviceRequest, Costs, advise, rays::MAX_RAYS};
 use crate::case::{Catalogue, Spec, catalogue};
 use crate::report::advise as page;
 
@@ -45,7 +45,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
     /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: RowFormat,
 }
 
 /// Advises, writes, prints.
@@ -61,24 +61,31 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let advice = found.map_err(wrong)?;
     let mut errors = Errors::default();
     errors.keep(match arguments.format {
-        Format::Table if console.quiet => Ok(()),
-        Format::Table => output::print(&page::console::table(&advice, output::pen(console))),
-        Format::Csv => output::print(&page::csv(&advice)?),
-        Format::Json => output::print(&page::json(&advice)?),
+        RowFormat::Table if console.quiet => Ok(()),
+        RowFormat::Table => output::print(&page::console::table(&advice, output::pen(console))),
+        RowFormat::Csv => output::print(&page::csv(&advice)?),
+        RowFormat::Json => output::print(&page::json(&advice)?),
     });
     if let Some(out) = &arguments.out {
         let files = errors.write(page::render(&advice), out);
-        let is_told = arguments.format == Format::Table && !console.quiet && files.is_some();
+        let is_told = arguments.format == RowFormat::Table && !console.quiet && files.is_some();
         errors.keep(if is_told { output::print(&output::report_in(out)) } else { Ok(()) });
     }
     Ok(errors.close(0))
 }
 
 impl Arguments {
-    fn request(&self) -> Request {
+    fn request(&self) -> AdviceRequest {
         let costs = self.cost.clone().unwrap_or_else(|| Costs::of_this_machine(self.calibrate));
         let (target, costs) = options::goal(self.error, self.budget, costs);
         let (rays, seed) = (self.rays, self.seed.seed);
-        Request { target, costs, rays, seed, looseness: self.majorant, curves: self.out.is_some() }
+        AdviceRequest {
+            target,
+            costs,
+            rays,
+            seed,
+            looseness: self.majorant,
+            curves: self.out.is_some(),
+        }
     }
 }

@@ -7,7 +7,9 @@ use clap::Args;
 
 use super::numbers;
 use crate::case::Case;
-use crate::record::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
+use crate::record::baseline::{
+    Baseline, BaselineError, Comparison, ComparisonLevels, compare, fingerprint,
+};
 use crate::record::{Record, Verdict};
 use crate::report::run::diff;
 
@@ -121,7 +123,7 @@ impl Baselines {
         if let Some((name, _, stored)) = stored {
             let time_tolerance = self.time_tolerance.unwrap_or(TIME_TOLERANCE);
             let time_tolerance = Some(time_tolerance).filter(|tolerance| tolerance.is_finite());
-            let rules = Rules { alpha: record.results.alpha, time_tolerance };
+            let rules = ComparisonLevels { alpha: record.results.alpha, time_tolerance };
             let (comparison, next) = compare(name, stored, &run, &rules);
             record.comparison = Some(comparison);
             if save.as_ref().is_some_and(|(save, _)| save == name) {

@@ -7,11 +7,11 @@ use clap::Args;
 use fearless_simd::Level;
 
 use super::baseline::Files;
-use super::output::{self, Errors, Format};
+use super::output::{self, Errors, RowFormat};
 use super::selection::{self, Experiments};
 use super::{Console, numbers};
 use crate::bench::record::Bench;
-use crate::bench::stored::{Comparison, Stored, compare};
+use crate::bench::stored::{BenchComparison, Stored, compare};
 use crate::bench::{Amounts, measure};
 use crate::case::Catalogue;
 use crate::plan::{Amount, Plan};
@@ -56,7 +56,7 @@ pub struct Arguments {
     time_tolerance: f64,
     /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: RowFormat,
 }
 
 /// Times, compares, writes, prints.
@@ -70,7 +70,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let plan = selection::on_threads(0, || experiments.plan(&cases, &options, console))?;
     let ready = drawable(&plan)?;
     let level = arguments.level.unwrap_or_else(Level::new);
-    let is_told = arguments.format == Format::Table && !console.quiet;
+    let is_told = arguments.format == RowFormat::Table && !console.quiet;
     if is_told {
         output::print(&page::console::opening(&plan, *rounds, *draws))?;
     }
@@ -87,7 +87,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         .stored
         .as_ref()
         .map(|(name, _, stored)| compare(name, stored, &now, arguments.time_tolerance));
-    let is_worse = bench.comparison.as_ref().is_some_and(Comparison::fails);
+    let is_worse = bench.comparison.as_ref().is_some_and(BenchComparison::fails);
     let mut errors = Errors::default();
     let nothing = bench.comparison.as_ref().and_then(page::diff::nothing);
     let complain =
@@ -151,10 +151,10 @@ impl Arguments {
 
     fn print(&self, bench: &Bench, console: &Console) -> anyhow::Result<()> {
         let text = match self.format {
-            Format::Table if console.quiet => return Ok(()),
-            Format::Table => page::console::table(bench, output::pen(console)),
-            Format::Csv => page::tables::csv(bench)?,
-            Format::Json => page::tables::json(bench)?,
+            RowFormat::Table if console.quiet => return Ok(()),
+            RowFormat::Table => page::console::table(bench, output::pen(console)),
+            RowFormat::Csv => page::tables::csv(bench)?,
+            RowFormat::Json => page::tables::json(bench)?,
         };
         output::print(&text)
     }

@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 
 use super::Console;
 use super::help::Names;
-use super::listing::{Row, print_pages, print_rows};
-use super::output::Format;
+use super::listing::{ListingRow, print_pages, print_rows};
+use super::output::RowFormat;
 use crate::case::catalogue::{Catalogue, built_in};
 use crate::case::suite;
 use crate::render::{self, Picture};
@@ -22,11 +22,11 @@ use theory::problems::{self, MultipleScattering, Named};
 #[derive(Debug, Args)]
 pub struct List {
     /// One part of the catalogue; without it, all of it
-    #[arg(value_parser = Kind)]
+    #[arg(value_parser = CataloguePart)]
     what: Option<What>,
     /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: RowFormat,
 }
 
 /// A part of the catalogue.
@@ -64,9 +64,9 @@ impl What {
 
 /// Reads a part of the catalogue. The error about a name in the catalogue says which command shows its page.
 #[derive(Debug, Clone)]
-struct Kind;
+struct CataloguePart;
 
-impl TypedValueParser for Kind {
+impl TypedValueParser for CataloguePart {
     type Value = What;
 
     fn parse_ref(
@@ -127,20 +127,20 @@ pub fn list(arguments: &List, catalogue: &Catalogue, console: &Console) -> anyho
 }
 
 /// Returns the rows of one part of the catalogue, or of all of it.
-fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
+fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<ListingRow> {
     let what = what.map(What::name);
     let wanted =
         |part: &str| what.as_deref().is_none_or(|what| part.split(' ').next() == Some(what));
     let wanted_pages = pages(catalogue).into_iter().filter(|(part, _)| wanted(part));
     let row = |(part, page): (String, Page)| {
         let (name, summary) = (page.name(), page.summary());
-        Row { part, name, summary }
+        ListingRow { part, name, summary }
     };
-    let mut rows: Vec<Row> = wanted_pages.map(row).collect();
+    let mut rows: Vec<ListingRow> = wanted_pages.map(row).collect();
     if wanted("cases") {
         for source in suite::suite() {
             let title = catalogue.read(&source).map(|case| case.title).unwrap_or_default();
-            rows.push(Row { part: "cases".into(), name: source.name, summary: title });
+            rows.push(ListingRow { part: "cases".into(), name: source.name, summary: title });
         }
     }
     if wanted("pictures") {
@@ -148,7 +148,7 @@ fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
             let title = Picture::read(&source, catalogue.own_pages())
                 .map(|picture| picture.title)
                 .unwrap_or_default();
-            rows.push(Row { part: "pictures".into(), name: source.name, summary: title });
+            rows.push(ListingRow { part: "pictures".into(), name: source.name, summary: title });
         }
     }
     rows
@@ -176,7 +176,7 @@ pub fn explain(
         let Ok(what) = What::from_str(name, true) else {
             return Err(unknown(&written, name, catalogue));
         };
-        return print_rows(&rows(Some(what), catalogue), Format::Table, console);
+        return print_rows(&rows(Some(what), catalogue), RowFormat::Table, console);
     }
     print_pages(name, found, console)
 }

@@ -72,7 +72,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     }
     let mut text = String::new();
     for question in &exported.truth.questions {
-        let export::truth::Question { name, scene, mean, error, .. } = question;
+        let export::truth::ExpectedSamples { name, scene, mean, error, .. } = question;
         let _ = writeln!(text, "{scene}: {name} {mean} ± {error:.1e}");
     }
     for note in &exported.truth.notes {

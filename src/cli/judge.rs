@@ -14,7 +14,7 @@ use super::reports::Inconclusive;
 use super::{Console, USAGE, numbers, output};
 use crate::case::Catalogue;
 use crate::json;
-use crate::judge::{self, Column, Draws, Format, Judgement, Options, ROUNDING};
+use crate::judge::{self, Column, DrawSource, Judgement, NumberFormat, Options, ROUNDING};
 use crate::record::Verdict;
 use crate::report::judge as report;
 use crate::report::judge::junit::JUnitCase;
@@ -116,7 +116,7 @@ pub struct Arguments {
     junit: Option<PathBuf>,
     /// Form of the verdict on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Shown,
+    format: VerdictForm,
     #[command(flatten)]
     images: images::Arguments,
 }
@@ -145,7 +145,7 @@ enum Input {
 
 /// Form of the verdict.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum Shown {
+enum VerdictForm {
     /// A block of lines for people
     #[default]
     Table,
@@ -202,14 +202,14 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
 }
 
 /// Verdict on the draws of a file, or on one channel of them.
-struct Judged {
+struct JudgedDraws {
     file: String,
     /// Name of the channel; empty if a draw has one channel only, or one was chosen.
     channel: String,
     judgement: Judgement,
 }
 
-impl Judged {
+impl JudgedDraws {
     /// Returns the name in a report.
     fn name(&self) -> String {
         let Self { file, channel, .. } = self;
@@ -269,43 +269,45 @@ impl Arguments {
         file: &Path,
         claimed: &Claimed,
         wanted: Options,
-    ) -> anyhow::Result<Vec<Judged>> {
+    ) -> anyhow::Result<Vec<JudgedDraws>> {
         let format = self.input_format(file)?;
         let layout = claimed.layout(self.column.as_deref());
         if !file.is_file() && (is_pipe(file) || file.exists()) {
             // A pipe can be opened only once, and may be endless.
             let mut draws = if is_pipe(file) {
-                Draws::from_reader_as(std::io::stdin(), "stdin", format, &layout)?
+                DrawSource::from_reader_as(std::io::stdin(), "stdin", format, &layout)?
             } else {
-                Draws::open_as(file, format, &layout)?
+                DrawSource::open_as(file, format, &layout)?
             };
             let length = draws.known_length();
             let most = wanted.most.or_else(|| length.is_none().then_some(OF_A_PIPE));
             let wanted = Options { most, ..wanted };
             return claimed.judge(&name(file), &mut draws, wanted, length);
         }
-        let length = match (Draws::open_as(file, format.clone(), &layout)?.known_length(), &format)
-        {
-            // Tests of a distribution need a number of draws that is known before the first.
-            (None, Format::Csv { .. }) if self.tolerance.is_none() || claimed.has_theory() => {
-                Some(judge::count(file, format.clone(), &layout)?)
-            }
-            (length, _) => length,
-        };
-        let mut draws = Draws::open_as(file, format, &layout)?;
+        let length =
+            match (DrawSource::open_as(file, format.clone(), &layout)?.known_length(), &format) {
+                // Tests of a distribution need a number of draws that is known before the first.
+                (None, NumberFormat::Csv { .. })
+                    if self.tolerance.is_none() || claimed.has_theory() =>
+                {
+                    Some(judge::count(file, format.clone(), &layout)?)
+                }
+                (length, _) => length,
+            };
+        let mut draws = DrawSource::open_as(file, format, &layout)?;
         claimed.judge(&name(file), &mut draws, wanted, length)
     }
 
-    fn input_format(&self, file: &Path) -> anyhow::Result<Format> {
+    fn input_format(&self, file: &Path) -> anyhow::Result<NumberFormat> {
         let is_pipe = is_pipe(file);
-        let plain = Format::Csv { column: None, lookups: None };
+        let plain = NumberFormat::Csv { column: None, lookups: None };
         let format = match self.input {
             Some(Input::Csv) => Some(plain),
-            Some(Input::Npy) => Some(Format::Npy),
-            Some(Input::F64) => Some(Format::Raw),
-            Some(Input::F32) => Some(Format::RawSingle),
+            Some(Input::Npy) => Some(NumberFormat::Npy),
+            Some(Input::F64) => Some(NumberFormat::Raw),
+            Some(Input::F32) => Some(NumberFormat::RawSingle),
             None if is_pipe => None,
-            None => Format::of_path(file),
+            None => NumberFormat::of_path(file),
         };
         let place = if is_pipe { "a pipe".to_owned() } else { file.display().to_string() };
         let format =
@@ -319,17 +321,17 @@ impl Arguments {
             })?;
         let lookups = self.lookups.as_deref().and_then(|text| text.parse::<Column>().ok());
         match (format, lookups) {
-            (Format::Csv { .. }, lookups) => Ok(Format::Csv { column: None, lookups }),
+            (NumberFormat::Csv { .. }, lookups) => Ok(NumberFormat::Csv { column: None, lookups }),
             (format, None) => Ok(format),
             _ => anyhow::bail!("only csv has a column of lookups; leave --lookups out"),
         }
     }
 
     /// Prints one verdict by itself, or several with a summary.
-    fn show(&self, judged: &[Judged], console: &Console) -> anyhow::Result<()> {
+    fn show(&self, judged: &[JudgedDraws], console: &Console) -> anyhow::Result<()> {
         match self.format {
-            Shown::Table if console.quiet || judged.is_empty() => Ok(()),
-            Shown::Table => {
+            VerdictForm::Table if console.quiet || judged.is_empty() => Ok(()),
+            VerdictForm::Table => {
                 let width = output::pen(console).width;
                 let blocks: Vec<String> = judged
                     .iter()
@@ -337,20 +339,20 @@ impl Arguments {
                     .collect();
                 output::print(&(blocks.join("\n") + &self.together(judged)))
             }
-            Shown::Json if judged.is_empty() => Ok(()),
-            Shown::Json => output::print(&(self.json(judged)? + "\n")),
+            VerdictForm::Json if judged.is_empty() => Ok(()),
+            VerdictForm::Json => output::print(&(self.json(judged)? + "\n")),
         }
     }
 
     /// Returns the channels of each file.
-    fn by_file(judged: &[Judged]) -> Vec<&[Judged]> {
+    fn by_file(judged: &[JudgedDraws]) -> Vec<&[JudgedDraws]> {
         judged
             .chunk_by(|a, b| a.file == b.file && !b.channel.is_empty() && a.channel != b.channel)
             .collect()
     }
 
     /// Returns the summary of several verdicts.
-    fn together(&self, judged: &[Judged]) -> String {
+    fn together(&self, judged: &[JudgedDraws]) -> String {
         let verdicts = judged.iter().map(|found| &found.judgement);
         let files = Self::by_file(judged);
         let of = match (&files[..], self.files.len()) {
@@ -371,15 +373,15 @@ impl Arguments {
     }
 
     /// Returns all verdicts as JSON.
-    fn json(&self, judged: &[Judged]) -> serde_json::Result<String> {
+    fn json(&self, judged: &[JudgedDraws]) -> serde_json::Result<String> {
         match (judged, self.files.len()) {
             ([one], 1) if one.channel.is_empty() => json::pretty(&one.judgement),
             _ => json::pretty(&self.object(judged)),
         }
     }
 
-    fn object(&self, judged: &[Judged]) -> serde_json::Value {
-        let of_file = |channels: &[Judged]| match channels {
+    fn object(&self, judged: &[JudgedDraws]) -> serde_json::Value {
+        let of_file = |channels: &[JudgedDraws]| match channels {
             [one] if one.channel.is_empty() => serde_json::json!({ "judgement": one.judgement }),
             _ => {
                 let verdict = worst(&channels.iter().map(|found| &found.judgement));

@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::io::IsTerminal;
 
 use super::Console;
-use super::output::{self, Format};
+use super::output::{self, RowFormat};
 use crate::report::page;
 
 /// Row of the catalogue.
 #[derive(serde::Serialize)]
-pub struct Row {
+pub struct ListingRow {
     /// Part of the catalogue.
     pub part: String,
     /// Name.
@@ -19,11 +19,11 @@ pub struct Row {
 }
 
 /// Prints rows of a catalogue.
-pub fn print_rows(rows: &[Row], format: Format, console: &Console) -> anyhow::Result<u8> {
+pub fn print_rows(rows: &[ListingRow], format: RowFormat, console: &Console) -> anyhow::Result<u8> {
     output::print(&match format {
-        Format::Table => table(rows, console),
-        Format::Csv => csv(rows)?,
-        Format::Json => serde_json::to_string_pretty(rows)? + "\n",
+        RowFormat::Table => table(rows, console),
+        RowFormat::Csv => csv(rows)?,
+        RowFormat::Json => serde_json::to_string_pretty(rows)? + "\n",
     })?;
     Ok(0)
 }
@@ -49,7 +49,7 @@ pub fn print_pages(
     Ok(0)
 }
 
-fn table(rows: &[Row], console: &Console) -> String {
+fn table(rows: &[ListingRow], console: &Console) -> String {
     let colour = console.color.colours(std::io::stdout().is_terminal());
     let widest = rows.iter().map(|row| row.name.len()).max().unwrap_or(0);
     let mut text = String::new();
@@ -66,7 +66,7 @@ fn table(rows: &[Row], console: &Console) -> String {
     text
 }
 
-fn csv(rows: &[Row]) -> anyhow::Result<String> {
+fn csv(rows: &[ListingRow]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row)?;

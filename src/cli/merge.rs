@@ -38,7 +38,7 @@ pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> any
             )
         };
         let (log, header) = journal::open(folder).with_context(no_part)?;
-        parts.push(Part { folder, log, header });
+        parts.push(RunPart { folder, log, header });
     }
     let faults = faults(&parts);
     if !faults.is_empty() {
@@ -61,13 +61,13 @@ pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> any
 }
 
 /// Part of a run: its folder and content.
-struct Part<'a> {
+struct RunPart<'a> {
     folder: &'a Path,
     log: Log,
     header: Header,
 }
 
-impl Part<'_> {
+impl RunPart<'_> {
     /// Returns whether it has all blocks of its share, and no others.
     fn has_all(&self, plan: &Plan, keys: &[u64]) -> bool {
         let names = self.header.share.into_iter().flat_map(|share| share::blocks(plan, share));
@@ -82,12 +82,12 @@ impl Part<'_> {
 }
 
 /// Returns all reasons why parts cannot be one run.
-fn faults(parts: &[Part]) -> Vec<String> {
+fn faults(parts: &[RunPart]) -> Vec<String> {
     let Some(first) = parts.first() else { return vec!["there are no parts".to_owned()] };
     let of = first.header.share.map_or(0, |share| share.of);
     let mut faults = Vec::new();
     let mut seen = BTreeMap::<u32, &Path>::new();
-    for Part { folder, log, header } in parts {
+    for RunPart { folder, log, header } in parts {
         let (name, cure) = (folder.display(), journal::resume(folder));
         let Some(share) = header.share else {
             faults.push(format!("{name} is an interrupted run, not a part of one"));

@@ -85,7 +85,7 @@ enum Command {
     /// Time estimators: ns per draw, time to an error, speedup over a plain loop
     Bench(bench::Arguments),
     /// Print what a run would draw, and which experiments are refused and why
-    Plan(predict::Plan),
+    Plan(predict::PlanArguments),
     /// Draw pictures of estimators side by side at an equal number of lookups, with their errors
     Render(render::Arguments),
     /// Write the page report.html of a stored run

@@ -13,7 +13,7 @@ use crate::case::CaseError;
 use crate::record::Record;
 use crate::record::repeat::quoted;
 use crate::report::layout::Pen;
-use crate::report::run::console::{self, View};
+use crate::report::run::console::{self, TableView};
 use crate::report::run::summary_csv;
 use crate::report::{self, Artifact, ReportError};
 use numeric::digits::counted;
@@ -44,7 +44,7 @@ impl When {
 
 /// Form of rows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum RowFormat {
     /// A table for people
     #[default]
     Table,
@@ -57,15 +57,15 @@ pub enum Format {
 /// Prints a record's rows to stdout.
 pub fn print_record(
     record: &Record,
-    view: View,
-    format: Format,
+    view: TableView,
+    format: RowFormat,
     options: &Console,
 ) -> anyhow::Result<()> {
     let text = match format {
-        Format::Table if options.quiet => return Ok(()),
-        Format::Table => console::table(record, view, pen(options)),
-        Format::Csv => summary_csv::csv(record)?,
-        Format::Json => summary_csv::json(record)?,
+        RowFormat::Table if options.quiet => return Ok(()),
+        RowFormat::Table => console::table(record, view, pen(options)),
+        RowFormat::Csv => summary_csv::csv(record)?,
+        RowFormat::Json => summary_csv::json(record)?,
     };
     print(&text)
 }
@@ -73,12 +73,12 @@ pub fn print_record(
 /// Prints the results of a run to stdout: rows that do not pass and a line for each case, or every row.
 pub fn print_run(
     record: &Record,
-    format: Format,
+    format: RowFormat,
     is_verbose: bool,
     options: &Console,
 ) -> anyhow::Result<()> {
-    if format != Format::Table || is_verbose || options.quiet {
-        return print_record(record, View::Run, format, options);
+    if format != RowFormat::Table || is_verbose || options.quiet {
+        return print_record(record, TableView::Run, format, options);
     }
     print(&console::brief(record, pen(options)))
 }

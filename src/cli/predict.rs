@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 use clap::Args;
 
-use super::output::{self, Format};
+use super::output::{self, RowFormat};
 use super::selection::Selection;
 use super::{Console, journal};
 use crate::case::Catalogue;
@@ -13,7 +13,7 @@ use crate::draw::store::{Header, Store};
 use crate::plan::options::DRAWS;
 use crate::record::baseline::fingerprint;
 use crate::record::build;
-use crate::report::run::console::{View, prediction_heading};
+use crate::report::run::console::{TableView, prediction_heading};
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]
@@ -30,7 +30,7 @@ pub struct Predict {
     optimum: bool,
     /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: RowFormat,
 }
 
 /// Prints the prediction of each experiment.
@@ -43,14 +43,14 @@ pub fn predict(
     let cases = selection.read(catalogue, console)?;
     let predict = if arguments.optimum { build::predicted_with_optima } else { build::predicted };
     let options = selection.options(DRAWS)?;
-    let is_told = arguments.format == Format::Table && !console.quiet;
+    let is_told = arguments.format == RowFormat::Table && !console.quiet;
     let record = selection.with_plan(&cases, &options, console, |plan| {
         if is_told {
             output::print(&prediction_heading(plan))?;
         }
         Ok(predict(plan))
     })?;
-    let view = if arguments.moments { View::Moments } else { View::Predict };
+    let view = if arguments.moments { TableView::Moments } else { TableView::Predict };
     output::print_record(&record, view, arguments.format, console)?;
     if is_told {
         output::print("`trueflight run` draws these estimators and compares them with theory.\n")?;
@@ -60,7 +60,7 @@ pub fn predict(
 
 /// Arguments of `plan`.
 #[derive(Debug, Args)]
-pub struct Plan {
+pub struct PlanArguments {
     #[command(flatten)]
     selection: Selection,
     /// Folder of the results of an earlier run: experiments that have not changed since are not drawn
@@ -68,11 +68,15 @@ pub struct Plan {
     out: PathBuf,
     /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: RowFormat,
 }
 
 /// Prints the experiments with their draws, or why they are refused.
-pub fn plan(arguments: &Plan, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+pub fn plan(
+    arguments: &PlanArguments,
+    catalogue: &Catalogue,
+    console: &Console,
+) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(catalogue, console)?;
     let (record, [kept, ready]) =
@@ -83,8 +87,8 @@ pub fn plan(arguments: &Plan, catalogue: &Catalogue, console: &Console) -> anyho
             store.reuse(&finished, false).with_context(wrong)?;
             Ok((build::planned(plan), store.reusable(plan)))
         })?;
-    output::print_record(&record, View::Plan, arguments.format, console)?;
-    if kept > 0 && arguments.format == Format::Table && !console.quiet {
+    output::print_record(&record, TableView::Plan, arguments.format, console)?;
+    if kept > 0 && arguments.format == RowFormat::Table && !console.quiet {
         let folder = arguments.out.display();
         output::print(&format!(
             "{kept} of {ready} experiments have not changed since the last run in {folder}: `run` \

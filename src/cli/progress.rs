@@ -20,12 +20,12 @@ const CLEAR: &str = "\r\x1b[2K";
 /// Bar on stderr, which a thread draws if it is shown at all. It disappears when it is dropped.
 #[derive(Debug)]
 pub struct Bar {
-    state: Arc<State>,
+    state: Arc<ProgressState>,
     thread: Option<JoinHandle<()>>,
 }
 
 #[derive(Debug)]
-struct State {
+struct ProgressState {
     /// Verb and plural noun of the bar, such as `drawing` and `draws`.
     words: [String; 2],
     begin: Instant,
@@ -48,7 +48,7 @@ struct Screen {
 impl Bar {
     /// Returns a bar of work on things of this number, which ends after `limit` seconds at the latest, if there is a limit.
     pub fn new([doing, things]: [&str; 2], all: u64, limit: Option<f64>, is_shown: bool) -> Self {
-        let state = Arc::new(State {
+        let state = Arc::new(ProgressState {
             words: [doing, things].map(str::to_owned),
             begin: Instant::now(),
             limit,
@@ -107,7 +107,7 @@ impl Drop for Bar {
     }
 }
 
-impl State {
+impl ProgressState {
     /// Draws the bar until it is closed, and clears it then.
     fn draw(&self) {
         let mut screen = self.screen.lock().unwrap_or_else(PoisonError::into_inner);

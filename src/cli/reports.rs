@@ -12,7 +12,7 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 
 use super::USAGE;
-use super::output::{self, Errors, Format};
+use super::output::{self, Errors, RowFormat};
 use crate::case::Case;
 use crate::record::baseline::Comparison;
 use crate::record::{Record, Verdict};
@@ -27,7 +27,7 @@ use media::files;
 pub struct Reports {
     /// Form of the rows on stdout; csv and json have all of them
     #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    pub format: RowFormat,
     /// Meaning of an inconclusive experiment for the exit code [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
     pub inconclusive: Option<Inconclusive>,
@@ -52,7 +52,7 @@ pub struct Reports {
 impl Reports {
     /// Returns whether the rows are printed for people.
     pub fn is_table(&self) -> bool {
-        self.format == Format::Table
+        self.format == RowFormat::Table
     }
 
     /// Returns the files that are asked for, each with its option.

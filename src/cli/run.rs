@@ -23,7 +23,7 @@ use crate::report::run::console as screen;
 
 /// Defaults by which commands differ.
 #[derive(Debug, Clone, Copy)]
-pub struct Profile {
+pub struct CommandDefaults {
     /// Number of draws per experiment if neither an argument nor the case gives it.
     draws: u64,
     /// Folder of the results.
@@ -33,10 +33,11 @@ pub struct Profile {
 }
 
 /// Profile of `run` and `merge`.
-pub const RUN: Profile = Profile { draws: DRAWS, out: Some("results"), is_whole: true };
+pub const RUN: CommandDefaults =
+    CommandDefaults { draws: DRAWS, out: Some("results"), is_whole: true };
 
 /// Profile of `check`, for a CI: fewer draws, nothing is kept, and reports are written where an option asks for them.
-const CHECK: Profile = Profile { draws: 400_000, out: None, is_whole: false };
+const CHECK: CommandDefaults = CommandDefaults { draws: 400_000, out: None, is_whole: false };
 
 /// Arguments of `run`.
 #[derive(Debug, Clone, Args)]
@@ -92,11 +93,11 @@ impl CheckArguments {
         words
     }
 
-    fn options(&self, profile: Profile) -> anyhow::Result<Options> {
+    fn options(&self, profile: CommandDefaults) -> anyhow::Result<Options> {
         Ok(self.looks.of(self.selection.options(profile.draws)?))
     }
 
-    fn out(&self, profile: Profile) -> Option<PathBuf> {
+    fn out(&self, profile: CommandDefaults) -> Option<PathBuf> {
         self.reports.out.clone().or(profile.out.map(PathBuf::from))
     }
 }
@@ -240,7 +241,7 @@ fn draw_share(
 /// Draws the blocks that the store does not have, judges, writes, prints.
 pub fn judge(
     asked: &CheckArguments,
-    profile: Profile,
+    profile: CommandDefaults,
     kept: &ResumeArguments,
     catalogue: &Catalogue,
     console: &Console,

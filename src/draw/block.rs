@@ -11,9 +11,9 @@ use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Ready;
-use crate::plan::{Planned, PlannedCase};
+use crate::plan::{PlannedCase, PlannedExperiment};
 use checks::batch::Batch;
-use checks::check::{Observer, Place, Total};
+use checks::check::{BufferPlace, Observer, Total};
 use estimators::DrawBuffer;
 use gate::stats::Tally;
 use gate::stats::verdict::BLOCK;
@@ -37,7 +37,7 @@ pub struct Block {
 /// Draws `every` blocks one after the other and merges them into block number `number` of that size. `None` for a
 /// refused experiment, or if `is_over` becomes true before the last block.
 pub fn merged(
-    planned: &Planned,
+    planned: &PlannedExperiment,
     number: u64,
     every: u64,
     is_over: &dyn Fn() -> bool,
@@ -61,10 +61,10 @@ pub fn merged(
 
 impl Block {
     /// Draws a block of an experiment; `None` if it is refused.
-    pub fn drawn(planned: &Planned, block: u64) -> Option<Self> {
+    pub fn drawn(planned: &PlannedExperiment, block: u64) -> Option<Self> {
         // Processor time, not wall time: other processes do not count.
         let begin = ThreadTime::now();
-        let mut drawing = Drawing::begin(planned, block)?;
+        let mut drawing = OpenBlock::begin(planned, block)?;
         while drawing.count() > 0 {
             drawing.fill();
             drawing.absorb();
@@ -73,7 +73,7 @@ impl Block {
     }
 
     /// Adds the block that follows.
-    fn merge(&mut self, planned: &Planned, next: &Self) {
+    fn merge(&mut self, planned: &PlannedExperiment, next: &Self) {
         self.draws += next.draws;
         self.seconds += next.seconds;
         self.lookups.merge(&next.lookups);
@@ -111,8 +111,8 @@ impl Scratch {
 }
 
 /// Block that is being drawn.
-struct Drawing<'p> {
-    planned: &'p Planned,
+struct OpenBlock<'p> {
+    planned: &'p PlannedExperiment,
     ready: &'p Ready,
     streams: Streams,
     /// Number of draws that the buffer takes.
@@ -127,9 +127,9 @@ struct Drawing<'p> {
     end: u64,
 }
 
-impl<'p> Drawing<'p> {
+impl<'p> OpenBlock<'p> {
     /// Starts at the first draw; `None` for a refused experiment.
-    fn begin(planned: &'p Planned, block: u64) -> Option<Self> {
+    fn begin(planned: &'p PlannedExperiment, block: u64) -> Option<Self> {
         let ready = planned.outcome.as_ref().ok()?;
         let channels = ready.prediction.channels.len();
         let start = block * BLOCK;
@@ -173,7 +173,7 @@ impl<'p> Drawing<'p> {
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (self.at - self.start) as usize;
         for observer in &mut self.observers {
-            observer.absorb(&draws, Place { first, is_fixed }, y);
+            observer.absorb(&draws, BufferPlace { first, is_fixed }, y);
         }
         if is_fixed {
             let prediction = &self.ready.prediction;
@@ -230,7 +230,7 @@ pub struct Progress {
 
 impl Progress {
     /// Returns the progress before the first block.
-    pub fn new(planned: &Planned) -> Self {
+    pub fn new(planned: &PlannedExperiment) -> Self {
         Self { drawn: Drawn::new(planned), look: 1, ..Self::default() }
     }
 }
@@ -241,7 +241,7 @@ pub struct DrawnExperiment<'p> {
     /// The case.
     pub case: &'p PlannedCase<'p>,
     /// The experiment.
-    pub planned: &'p Planned,
+    pub planned: &'p PlannedExperiment,
     /// Its draws.
     pub drawn: Drawn,
 }
@@ -259,7 +259,7 @@ pub struct Draws<'p> {
 
 impl Drawn {
     /// Returns the sums without draws.
-    pub fn new(planned: &Planned) -> Self {
+    pub fn new(planned: &PlannedExperiment) -> Self {
         let totals = planned.questions.iter().map(|question| question.answer.total());
         let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
         let tallies = vec![Tally::default(); channels];
@@ -267,7 +267,7 @@ impl Drawn {
     }
 
     /// Adds the block that follows.
-    pub fn merge(&mut self, planned: &Planned, block: &Block, number: u64) {
+    pub fn merge(&mut self, planned: &PlannedExperiment, block: &Block, number: u64) {
         self.draws += block.draws;
         for (tally, other) in self.tallies.iter_mut().zip(&block.tallies) {
             tally.merge(other);

@@ -19,7 +19,7 @@ use std::time::Instant;
 use crate::draw::block::{Block, Drawn, DrawnExperiment, Draws, Progress};
 use crate::draw::share::{self, BlockName, Drawing, Share};
 use crate::draw::store::Store;
-use crate::plan::{Plan, Planned};
+use crate::plan::{Plan, PlannedExperiment};
 use ::gate::session::{Sink, Until, drive};
 use ::gate::stats::gate::{self, PLANNED, TYPICAL};
 use ::gate::stats::verdict::BLOCK;
@@ -264,7 +264,7 @@ impl Iterator for Round {
 
 /// Experiment that is being drawn.
 struct Running<'p> {
-    planned: &'p Planned,
+    planned: &'p PlannedExperiment,
     /// Number of draws that are merged as one block.
     step: u64,
     /// Merged blocks and decisions so far.
@@ -341,7 +341,7 @@ impl Running<'_> {
 /// Returns the number of draws that an experiment is expected to make. A correct scalar passes after 17/27 of its plan;
 /// one that is not promised to pass keeps the drawing open until all planned draws are made.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of draws
-fn expected(planned: &Planned) -> u64 {
+fn expected(planned: &PlannedExperiment) -> u64 {
     if planned.horizon <= planned.draws {
         return planned.horizon;
     }

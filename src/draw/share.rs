@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::draw::block::{self, Block};
 use crate::draw::store::Header;
-use crate::plan::{Plan, Planned};
+use crate::plan::{Plan, PlannedExperiment};
 use theory::parallel;
 
 /// Part of a run; `1/1` is the whole run.
@@ -107,7 +107,7 @@ impl Workers for Threads {
 /// Drawing of a plan; experiments are found by their numbers.
 pub struct Drawing<'p> {
     blocks_per_look: u64,
-    experiments: Vec<&'p Planned>,
+    experiments: Vec<&'p PlannedExperiment>,
     /// Returns whether the drawing shall end.
     pub is_over: &'p (dyn Fn() -> bool + Sync),
 }

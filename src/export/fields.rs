@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 
-use super::scene::{Field, Scene};
+use super::scene::{ExportedField, ExportedScene};
 use super::{ExportOptions, Target, single};
 use media::phase::Phase;
 use media::phase::henyey_greenstein::HenyeyGreenstein;
@@ -33,7 +33,7 @@ pub(super) type Unsuitable = (String, &'static str);
 pub(super) type OwnGrid = ([usize; 3], bool);
 
 /// Options of one export.
-pub(super) struct Reader<'a> {
+pub(super) struct ExportReader<'a> {
     /// The name of the case.
     pub name: String,
     /// The renderer.
@@ -43,21 +43,21 @@ pub(super) struct Reader<'a> {
 }
 
 /// Place of a medium, and σ_t of each channel, all of them homogeneous or all of them sampled.
-pub(super) struct Fields {
+pub(super) struct MediumFields {
     /// Box or ball.
     pub shape: Bounds,
     /// Field of each channel.
-    pub fields: Vec<Field>,
+    pub fields: Vec<ExportedField>,
 }
 
-impl Fields {
+impl MediumFields {
     /// Returns the length along z.
     pub fn length(&self) -> f64 {
         self.shape.enclosing_box().map_or(0.0, |bounds| bounds.high.0[2])
     }
 }
 
-impl Reader<'_> {
+impl ExportReader<'_> {
     /// Returns the exported ones among all channels of a case.
     pub fn chosen<T>(&self, all: Vec<T>) -> Result<Vec<T>, Unsuitable> {
         const CURE: &str = "choose up to three of them, as in `--channels 1,2,3`, and export the others to another folder";
@@ -83,7 +83,7 @@ impl Reader<'_> {
     }
 
     /// Returns notes on a scene's channels and its medium.
-    pub fn remarks(&self, scene: &Scene) -> Vec<String> {
+    pub fn remarks(&self, scene: &ExportedScene) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(numbers) = &self.wishes.channels {
             let list: Vec<String> = numbers.iter().map(usize::to_string).collect();
@@ -109,7 +109,7 @@ impl Reader<'_> {
         &self,
         volumes: &[Arc<Volume>],
         own: Option<OwnGrid>,
-    ) -> Result<Fields, Unsuitable> {
+    ) -> Result<MediumFields, Unsuitable> {
         let bounds = volumes[0].bounds();
         let Some(around) = bounds.enclosing_box() else {
             let cure = "give it `bounds.box = { low, high }`";
@@ -118,38 +118,42 @@ impl Reader<'_> {
         let values: Option<Vec<f64>> =
             volumes.iter().map(|volume| volume.facts().single_value).collect();
         if let Some(values) = values {
-            let fields = values.into_iter().map(|value| Field::Even(single(value))).collect();
+            let fields =
+                values.into_iter().map(|value| ExportedField::Even(single(value))).collect();
             let shape = match bounds {
                 Bounds::Sphere { centre, radius } => {
                     Bounds::Sphere { centre: Point(centre.0.map(single)), radius: single(radius) }
                 }
                 Bounds::Box(_) | Bounds::Everywhere => Bounds::Box(rounded(around)),
             };
-            return Ok(Fields { shape, fields });
+            return Ok(MediumFields { shape, fields });
         }
         let most = self.wishes.cells.unwrap_or(CELLS[0]);
         let size = own.map_or_else(|| cells(around, most), |own| own.0);
         let nearest = own.is_some_and(|own| own.1) && self.target == Target::Mitsuba;
         let sample =
             |volume: &Arc<Volume>| Sampled::of_volume(&**volume, rounded(around), size, nearest);
-        let fields = volumes.iter().map(|volume| Field::Grid(sample(volume))).collect();
-        Ok(Fields { shape: Bounds::Box(rounded(around)), fields })
+        let fields = volumes.iter().map(|volume| ExportedField::Grid(sample(volume))).collect();
+        Ok(MediumFields { shape: Bounds::Box(rounded(around)), fields })
     }
 
     /// Returns media along one line, as layers along z that begin at 0, in a box that is twice as wide as long.
-    pub fn along(&self, media: &[Medium]) -> Fields {
+    pub fn along(&self, media: &[Medium]) -> MediumFields {
         let length = single(media[0].support().length());
         let shape =
             Bounds::Box(Aabb { low: Point([-length, -length, 0.0]), high: Point([length; 3]) });
         let value = |medium: &Medium| medium.lookups(Level::new()).single_value();
         let values: Option<Vec<f64>> = media.iter().map(value).collect();
         let fields = if let Some(values) = values {
-            values.into_iter().map(|value| Field::Even(single(value))).collect()
+            values.into_iter().map(|value| ExportedField::Even(single(value))).collect()
         } else {
             let cells = self.wishes.cells.unwrap_or(CELLS[1]);
-            media.iter().map(|medium| Field::Grid(Sampled::of_line(medium, cells))).collect()
+            media
+                .iter()
+                .map(|medium| ExportedField::Grid(Sampled::of_line(medium, cells)))
+                .collect()
         };
-        Fields { shape, fields }
+        MediumFields { shape, fields }
     }
 
     /// Returns the size of the grids of samples, at the centres of cells, that all exported channels have, and whether

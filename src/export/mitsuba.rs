@@ -11,7 +11,7 @@
 use std::fmt::Write;
 
 use super::fields::FILE as GRID;
-use super::scene::{Light, Scene, View};
+use super::scene::{ExportedLight, ExportedScene, ExportedView};
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 
@@ -22,7 +22,7 @@ pub(super) fn number(x: f64) -> String {
 }
 
 /// Returns the text of a scene file.
-pub fn text(scene: &Scene, view: &View) -> String {
+pub fn text(scene: &ExportedScene, view: &ExportedView) -> String {
     let depth = scene.scatterings.map_or(-1, |most| i64::from(most) + 1);
     let mut text = format!(
         r#"<?xml version="1.0" encoding="utf-8"?>
@@ -49,7 +49,7 @@ pub fn text(scene: &Scene, view: &View) -> String {
 }
 
 /// Writes the content of the medium's element.
-fn medium(scene: &Scene, text: &mut String) {
+fn medium(scene: &ExportedScene, text: &mut String) {
     if let Some(grid) = scene.grids().first() {
         let Aabb { low, high } = grid.bounds;
         let filter = if grid.nearest { "nearest" } else { "trilinear" };
@@ -109,7 +109,7 @@ fn vector(what: &str, point: Point) -> String {
 }
 
 /// Writes the camera; all of its rays are equal.
-fn camera(scene: &Scene, text: &mut String) {
+fn camera(scene: &ExportedScene, text: &mut String) {
     let [right, up, onward] = scene.axes();
     let Aabb { low, high } = scene.bounds();
     let size = (high - low).norm() + (scene.eye - low).norm();
@@ -144,7 +144,7 @@ fn camera(scene: &Scene, text: &mut String) {
 }
 
 /// Writes the surface of the medium, and the mirrors within.
-fn boundary(scene: &Scene, text: &mut String) {
+fn boundary(scene: &ExportedScene, text: &mut String) {
     let null =
         "    <bsdf type=\"null\"/>\n    <ref name=\"interior\" id=\"medium\"/>\n  </shape>\n";
     let Aabb { low, high } = scene.bounds();
@@ -203,7 +203,7 @@ fn ball(centre: Point, radius: f64) -> String {
     )
 }
 
-fn light(scene: &Scene, light: Light, text: &mut String) {
+fn light(scene: &ExportedScene, light: ExportedLight, text: &mut String) {
     let black = "    <bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0 0 0\"/></bsdf>\n";
     let area = "    <emitter type=\"area\"><rgb name=\"radiance\" value=\"1 1 1\"/></emitter>\n  </shape>\n";
     let plane = |height: f64, onward: f64| {
@@ -215,13 +215,13 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
     };
     let length = scene.bounds().high.0[2];
     let lines = match light {
-        Light::Everywhere => {
+        ExportedLight::Everywhere => {
             "  <emitter type=\"constant\"><rgb name=\"radiance\" value=\"1 1 1\"/></emitter>\n"
                 .to_owned()
         }
-        Light::Above => plane(-0.25 * length, 1.0),
-        Light::Below => plane(1.25 * length, -1.0),
-        Light::Point { position, power } => {
+        ExportedLight::Above => plane(-0.25 * length, 1.0),
+        ExportedLight::Below => plane(1.25 * length, -1.0),
+        ExportedLight::Point { position, power } => {
             let [x, y, z] = position.0.map(number);
             let intensity = number(power / (4.0 * std::f64::consts::PI));
             format!(
@@ -229,7 +229,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
                  <rgb name=\"intensity\" value=\"{intensity} {intensity} {intensity}\"/>\n  </emitter>\n"
             )
         }
-        Light::Core { radius } => {
+        ExportedLight::Core { radius } => {
             let Bounds::Sphere { centre, .. } = scene.shape else { return };
             // Light that hits it stays in the medium: it is no boundary.
             format!("{}{black}{area}", ball(centre, radius))

@@ -21,10 +21,10 @@ pub mod truth;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use scene::Scene;
+use scene::ExportedScene;
 use truth::Truth;
 
-use crate::case::{CaseError, Catalogue, Source};
+use crate::case::{CaseError, CaseText, Catalogue};
 use media::files;
 
 /// Renderer that scenes are written for.
@@ -124,7 +124,7 @@ pub struct ExportOptions {
 /// See [`export_with`].
 pub fn export(
     catalogue: &Catalogue,
-    source: &Source,
+    source: &CaseText,
     target: Target,
     cells: Option<usize>,
     out: &Path,
@@ -146,7 +146,7 @@ pub fn export(
 /// file is left behind then.
 pub fn export_with(
     catalogue: &Catalogue,
-    source: &Source,
+    source: &CaseText,
     target: Target,
     wishes: &ExportOptions,
     out: &Path,
@@ -162,7 +162,7 @@ pub fn export_with(
 }
 
 /// Writes a scene into a folder, completely or not at all.
-fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
+fn write(scene: &ExportedScene, out: &Path) -> Result<Exported, ExportError> {
     let io = |path: &Path| {
         let path = path.to_owned();
         move |source| ExportError::Write { path, source }
@@ -248,9 +248,9 @@ pub fn single(x: f64) -> f64 {
     f64::from(x as f32)
 }
 
-impl Scene {
+impl ExportedScene {
     /// Returns the name of a scene file; that of one channel if there are several and pictures have none.
-    fn file(&self, view: &scene::View, channel: Option<usize>) -> String {
+    fn file(&self, view: &scene::ExportedView, channel: Option<usize>) -> String {
         match (self.target, channel) {
             (Target::Mitsuba, _) => format!("{}.xml", view.name),
             (Target::Pbrt, None) => format!("{}.pbrt", view.name),
@@ -259,7 +259,7 @@ impl Scene {
     }
 
     /// Returns the questions: each picture, and each of its channels, from 1, if there are several.
-    fn asked(&self) -> Vec<(&scene::View, Option<usize>)> {
+    fn asked(&self) -> Vec<(&scene::ExportedView, Option<usize>)> {
         let channels: Vec<Option<usize>> = if self.is_coloured() {
             (1..=self.channels.len()).map(Some).collect()
         } else {

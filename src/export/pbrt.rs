@@ -11,7 +11,7 @@
 use std::fmt::Write;
 
 use super::mitsuba::number;
-use super::scene::{Channel, Field, Light, Scene, View};
+use super::scene::{ChannelMedium, ExportedField, ExportedLight, ExportedScene, ExportedView};
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
 
@@ -19,7 +19,7 @@ use numeric::geometry::{Aabb, Bounds, Point};
 const DEEP: u32 = 1_000_000;
 
 /// Returns the text of a scene file of a name: of the first channel.
-pub fn text(scene: &Scene, view: &View, file: &str) -> String {
+pub fn text(scene: &ExportedScene, view: &ExportedView, file: &str) -> String {
     let ([_, up, onward], half) = (scene.axes(), number(scene.aperture()));
     let mut text = format!(
         "LookAt {} {} {}\n\
@@ -62,15 +62,15 @@ fn even(name: &str, x: f64) -> String {
     format!("\"spectrum {name}\" [ 200 {0} 900 {0} ]", number(x))
 }
 
-fn medium(scene: &Scene) -> String {
+fn medium(scene: &ExportedScene) -> String {
     let lobe = match scene.phase {
         Phase::HenyeyGreenstein(lobe) => lobe.g(),
         _ => 0.0,
     };
     let mut text = "MakeNamedMedium \"medium\" ".to_owned();
-    let Channel { field, albedo: a } = &scene.channels[0];
+    let ChannelMedium { field, albedo: a } = &scene.channels[0];
     let [absorbs, scatters] = match field {
-        Field::Grid(grid) => {
+        ExportedField::Grid(grid) => {
             let [nx, ny, nz] = grid.size;
             let Aabb { low, high } = grid.bounds;
             let values: Vec<String> = grid.values.iter().map(|&x| number(f64::from(x))).collect();
@@ -84,7 +84,7 @@ fn medium(scene: &Scene) -> String {
             );
             [1.0 - a, *a]
         }
-        Field::Even(extinction) => {
+        ExportedField::Even(extinction) => {
             text.push_str("\"string type\" \"homogeneous\"\n  ");
             [(1.0 - a) * extinction, a * extinction]
         }
@@ -112,10 +112,10 @@ fn ball(centre: Point, radius: f64) -> String {
     )
 }
 
-fn light(scene: &Scene, light: Light, text: &mut String) {
+fn light(scene: &ExportedScene, light: ExportedLight, text: &mut String) {
     let lines = match light {
-        Light::Everywhere => "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n".to_owned(),
-        Light::Point { position, power } => {
+        ExportedLight::Everywhere => "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n".to_owned(),
+        ExportedLight::Point { position, power } => {
             let medium = if scene.shape.contains(position.0) {
                 "MediumInterface \"\" \"medium\"\n"
             } else {
@@ -128,7 +128,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
                 triple(position),
             )
         }
-        Light::Core { radius } => {
+        ExportedLight::Core { radius } => {
             let Bounds::Sphere { centre, .. } = scene.shape else { return };
             format!(
                 "AttributeBegin\nMediumInterface \"\" \"medium\"\nMaterial \"diffuse\" {}\n\
@@ -138,7 +138,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
             )
         }
         // Slabs need mirrors, which pbrt does not have: they are refused.
-        Light::Above | Light::Below => return,
+        ExportedLight::Above | ExportedLight::Below => return,
     };
     text.push_str(&lines);
 }

@@ -14,17 +14,17 @@
 use std::slice;
 use std::sync::Arc;
 
-use super::fields::{Fields, Reader, Unsuitable, lobe, one_phase, unread};
-use super::scene::{Channel, Light, Scene, View};
+use super::fields::{ExportReader, MediumFields, Unsuitable, lobe, one_phase, unread};
+use super::scene::{ChannelMedium, ExportedLight, ExportedScene, ExportedView};
 use super::{ExportError, ExportOptions, Target, single};
 use crate::case::sweep::SweptQuantity;
-use crate::case::{Catalogue, Source, forms};
+use crate::case::{CaseText, Catalogue, forms};
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
 use media::{Body, Medium, Volume};
 use numeric::geometry::{Bounds, Point, Ray};
-use theory::problems::ball::{Light as BallLight, Sought};
-use theory::problems::slab::{Incidence, Light as Side};
+use theory::problems::ball::{BallLight, Sought};
+use theory::problems::slab::{Incidence, IncidentLight as Side};
 use theory::problems::{
     ChromaticSlab, Furnace, Problem, SingleScattering, Slab, SpectralFurnace,
     SpectralSingleScattering, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
@@ -33,12 +33,12 @@ use theory::problems::{
 /// Reads a case as a scene.
 pub fn read(
     catalogue: &Catalogue,
-    source: &Source,
+    source: &CaseText,
     target: Target,
     wishes: &ExportOptions,
-) -> Result<Scene, ExportError> {
+) -> Result<ExportedScene, ExportError> {
     let case = catalogue.read(source)?;
-    let reader = Reader { name: source.name.clone(), target, wishes };
+    let reader = ExportReader { name: source.name.clone(), target, wishes };
     let (scenario, body) = (&case.scenario, case.scenario.body());
     let scene = if scenario.problem::<Transmittance>().is_some()
         || scenario.problem::<SpectralTransmittance>().is_some()
@@ -111,16 +111,22 @@ pub fn read(
     })
 }
 
-impl Reader<'_> {
+impl ExportReader<'_> {
     /// Returns a black scene with one picture, in light from all sides.
-    fn scene(&self, problem: &'static str, fields: Fields, ray: [Point; 2], light: Light) -> Scene {
+    fn scene(
+        &self,
+        problem: &'static str,
+        fields: MediumFields,
+        ray: [Point; 2],
+        light: ExportedLight,
+    ) -> ExportedScene {
         let [eye, direction] = ray.map(|point| Point(point.0.map(single)));
         let name = if problem == "transmittance" { problem } else { "radiance" };
-        let Fields { shape, fields } = fields;
+        let MediumFields { shape, fields } = fields;
         let is_inside = shape.contains(eye.0);
-        let channels: Vec<Channel> =
-            fields.into_iter().map(|field| Channel { field, albedo: 0.0 }).collect();
-        let mut scene = Scene {
+        let channels: Vec<ChannelMedium> =
+            fields.into_iter().map(|field| ChannelMedium { field, albedo: 0.0 }).collect();
+        let mut scene = ExportedScene {
             case: self.name.clone(),
             problem,
             target: self.target,
@@ -133,7 +139,7 @@ impl Reader<'_> {
             is_inside,
             has_mirrors: false,
             scatterings: None,
-            views: vec![View { name, light }],
+            views: vec![ExportedView { name, light }],
             notes: Vec::new(),
         };
         scene.is_heterogeneous = self.wishes.heterogeneous && scene.grids().is_empty();
@@ -141,7 +147,7 @@ impl Reader<'_> {
         scene
     }
 
-    fn transmittance(&self, body: &Body) -> Result<Scene, Unsuitable> {
+    fn transmittance(&self, body: &Body) -> Result<ExportedScene, Unsuitable> {
         let bodies = self.chosen(body.channels().iter().collect())?;
         let media: Vec<Medium> = bodies.iter().map(|body| body.medium()).collect();
         if media[0].support().is_empty() {
@@ -163,7 +169,7 @@ impl Reader<'_> {
                 crossing = Some(ray);
             }
         }
-        let light = Light::Everywhere;
+        let light = ExportedLight::Everywhere;
         if let (Some(ray), true) = (crossing, volumes.len() == bodies.len()) {
             let fields = self.in_space(&volumes, own)?;
             return Ok(self.scene("transmittance", fields, [ray.origin, ray.direction], light));
@@ -173,7 +179,7 @@ impl Reader<'_> {
         Ok(self.scene("transmittance", fields, [eye, Point([0.0, 0.0, 1.0])], light))
     }
 
-    fn furnace(&self, body: &Body, furnace: &Furnace) -> Result<Scene, Unsuitable> {
+    fn furnace(&self, body: &Body, furnace: &Furnace) -> Result<ExportedScene, Unsuitable> {
         let volumes = slice::from_ref(&furnace.scene.volume);
         let fields = self.in_space(volumes, self.own_grids(body)?)?;
         let is_white = furnace.scene.albedo.even() == Some(1.0);
@@ -185,7 +191,7 @@ impl Reader<'_> {
         &self,
         body: &Body,
         furnace: &SpectralFurnace,
-    ) -> Result<Scene, Unsuitable> {
+    ) -> Result<ExportedScene, Unsuitable> {
         let own = self.own_grids(body)?;
         let channels = self.chosen(furnace.channels.iter().collect())?;
         let volumes: Vec<Arc<Volume>> = channels.iter().map(|one| one.volume.clone()).collect();
@@ -202,8 +208,14 @@ impl Reader<'_> {
     }
 
     /// Returns a white medium in light from all sides, viewed from outside.
-    fn white(&self, fields: Fields, ray: [Point; 2], phase: Phase, is_white: bool) -> Scene {
-        let mut scene = self.scene("furnace", fields, ray, Light::Everywhere);
+    fn white(
+        &self,
+        fields: MediumFields,
+        ray: [Point; 2],
+        phase: Phase,
+        is_white: bool,
+    ) -> ExportedScene {
+        let mut scene = self.scene("furnace", fields, ray, ExportedLight::Everywhere);
         let bounds = scene.bounds();
         let diagonal = (bounds.high - bounds.low).norm();
         let way = scene.direction * (2.0 * diagonal);
@@ -222,24 +234,24 @@ impl Reader<'_> {
         scene
     }
 
-    fn slab(&self, slab: &Slab) -> Result<Scene, Unsuitable> {
+    fn slab(&self, slab: &Slab) -> Result<ExportedScene, Unsuitable> {
         self.layers(vec![(slab.medium().clone(), slab.albedo, slab.incidence)])
     }
 
-    fn spectral_slab(&self, slab: &SpectralSlab) -> Result<Scene, Unsuitable> {
+    fn spectral_slab(&self, slab: &SpectralSlab) -> Result<ExportedScene, Unsuitable> {
         let albedos = slab.colours.albedos.iter();
         let channel = |&albedo: &f64| (slab.medium().clone(), albedo, slab.incidence);
         self.layers(albedos.map(channel).collect())
     }
 
-    fn chromatic_slab(&self, slab: &ChromaticSlab) -> Result<Scene, Unsuitable> {
+    fn chromatic_slab(&self, slab: &ChromaticSlab) -> Result<ExportedScene, Unsuitable> {
         let albedos = slab.colours.albedos.iter().copied();
         let channels = slab.media().iter().cloned().zip(albedos).zip(&slab.incidences);
         self.layers(channels.map(|((medium, albedo), &light)| (medium, albedo, light)).collect())
     }
 
     /// Returns an infinite slab from the medium, albedo, and incidence of each channel.
-    fn layers(&self, channels: Vec<(Medium, f64, Incidence)>) -> Result<Scene, Unsuitable> {
+    fn layers(&self, channels: Vec<(Medium, f64, Incidence)>) -> Result<ExportedScene, Unsuitable> {
         let channels = self.chosen(channels)?;
         let phases: Vec<Phase> = channels.iter().map(|channel| channel.2.phase).collect();
         let Side::Collimated(cosine) = channels[0].2.light else {
@@ -251,13 +263,14 @@ impl Reader<'_> {
         let fields = self.along(&media);
         let direction = Point([(1.0 - cosine * cosine).sqrt(), 0.0, cosine]);
         let eye = direction * (-fields.length() / 8.0);
-        let mut scene = self.scene("slab", fields, [eye, direction], Light::Above);
+        let mut scene = self.scene("slab", fields, [eye, direction], ExportedLight::Above);
         for (channel, (_, albedo, _)) in scene.channels.iter_mut().zip(channels) {
             channel.albedo = single(albedo);
         }
-        let views = [("reflectance", Light::Above), ("transmittance", Light::Below)];
-        let views = views.map(|(name, light)| View { name, light }).into();
-        Ok(Scene { phase, has_mirrors: true, views, ..scene })
+        let views =
+            [("reflectance", ExportedLight::Above), ("transmittance", ExportedLight::Below)];
+        let views = views.map(|(name, light)| ExportedView { name, light }).into();
+        Ok(ExportedScene { phase, has_mirrors: true, views, ..scene })
     }
 
     /// Returns a medium beside a point light with at most one scattering, channel by channel.
@@ -265,7 +278,7 @@ impl Reader<'_> {
         &self,
         body: &Body,
         channels: impl Iterator<Item = &'a SingleScattering> + Clone,
-    ) -> Result<Scene, Unsuitable> {
+    ) -> Result<ExportedScene, Unsuitable> {
         let lamp = channels.clone().next().map(SingleScattering::lamp).ok_or_else(unread)?;
         let own = self.own_grids(body)?;
         let mut scatterers = Vec::new();
@@ -278,7 +291,7 @@ impl Reader<'_> {
         let volumes: Vec<Arc<Volume>> = chosen.iter().map(|(volume, ..)| volume.clone()).collect();
         let (phase, ray) = (one_phase(&phases)?, chosen[0].1);
         let fields = self.in_space(&volumes, own)?;
-        let light = Light::Point {
+        let light = ExportedLight::Point {
             position: Point(lamp.position.0.map(single)),
             power: single(lamp.power),
         };
@@ -289,10 +302,10 @@ impl Reader<'_> {
         for (channel, (_, _, albedo, _)) in scene.channels.iter_mut().zip(chosen) {
             channel.albedo = single(albedo);
         }
-        Ok(Scene { phase, scatterings: Some(1), ..scene })
+        Ok(ExportedScene { phase, scatterings: Some(1), ..scene })
     }
 
-    fn sphere(&self, body: &Body, sphere: &Sphere) -> Result<Scene, Unsuitable> {
+    fn sphere(&self, body: &Body, sphere: &Sphere) -> Result<ExportedScene, Unsuitable> {
         let Body::Volume { ray, .. } = body else { return Err(unread()) };
         let cure = "take a homogeneous one that asks for the radiance, such as ball/black-light";
         if sphere.sought == Sought::MeanIntensity {
@@ -307,8 +320,8 @@ impl Reader<'_> {
             return Err((why.into(), cure));
         }
         let light = match sphere.light {
-            BallLight::BlackSphere(radius) => Light::Core { radius: single(radius) },
-            BallLight::Environment | BallLight::Distant(_) => Light::Everywhere,
+            BallLight::BlackSphere(radius) => ExportedLight::Core { radius: single(radius) },
+            BallLight::Environment | BallLight::Distant(_) => ExportedLight::Everywhere,
         };
         let albedo = sphere.scene.albedo.even().unwrap_or_default();
         let mut scene = self.scene("ball", fields, [ray.origin, ray.direction], light);

@@ -7,7 +7,7 @@ use numeric::geometry::{Aabb, Bounds, Point};
 
 /// Medium, lights and one ray; all numbers are of single precision.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub struct ExportedScene {
     /// The name of the case.
     pub case: String,
     /// Name of its problem, of one channel.
@@ -17,7 +17,7 @@ pub struct Scene {
     /// Box or ball that the medium fills.
     pub shape: Bounds,
     /// Medium of each channel, 1 to 3; one if all channels are equal.
-    pub channels: Vec<Channel>,
+    pub channels: Vec<ChannelMedium>,
     /// True if a homogeneous medium is written as a heterogeneous one.
     pub is_heterogeneous: bool,
     /// The phase function.
@@ -34,30 +34,30 @@ pub struct Scene {
     /// Largest number of scatterings; `None` for no limit.
     pub scatterings: Option<u32>,
     /// Pictures of the scene.
-    pub views: Vec<View>,
+    pub views: Vec<ExportedView>,
     /// Sentences about parts of the case that are not in the scene.
     pub notes: Vec<String>,
 }
 
 /// The medium of a channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
+pub struct ChannelMedium {
     /// σ_t, 1/length.
-    pub field: Field,
+    pub field: ExportedField,
     /// a, everywhere the same.
     pub albedo: f64,
 }
 
 /// σ_t, 1/length, of all channels in the same form.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Field {
+pub enum ExportedField {
     /// Homogeneous.
     Even(f64),
     /// Samples in a box.
     Grid(Sampled),
 }
 
-impl Field {
+impl ExportedField {
     /// Returns the largest extinction, 1/length.
     pub fn peak(&self) -> f64 {
         match self {
@@ -85,16 +85,16 @@ impl Field {
 
 /// A picture of the scene.
 #[derive(Debug, Clone)]
-pub struct View {
+pub struct ExportedView {
     /// Name of the quantity, and of the file.
     pub name: &'static str,
     /// Source of light of radiance 1.
-    pub light: Light,
+    pub light: ExportedLight,
 }
 
 /// Source of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Light {
+pub enum ExportedLight {
     /// From all sides, radiance 1.
     Everywhere,
     /// From a plane above a slab, z < 0, radiance 1.
@@ -115,11 +115,11 @@ pub enum Light {
     },
 }
 
-impl Scene {
+impl ExportedScene {
     /// Returns the samples of the channels, one if all have the same; none if the medium is homogeneous.
     pub fn grids(&self) -> Vec<&Sampled> {
         let fields = self.channels.iter().map(|channel| &channel.field);
-        let mut grids: Vec<&Sampled> = fields.filter_map(Field::grid).collect();
+        let mut grids: Vec<&Sampled> = fields.filter_map(ExportedField::grid).collect();
         if grids.windows(2).all(|pair| pair[0] == pair[1]) {
             grids.truncate(1);
         }

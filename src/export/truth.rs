@@ -30,9 +30,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::fields::{FILE as GRID, file_of};
-use super::scene::{Field, Light, Scene, View};
+use super::scene::{ExportedField, ExportedLight, ExportedScene, ExportedView};
 use super::{ExportError, Target};
-use crate::case::{Case, Source};
+use crate::case::{Case, CaseText};
 use crate::json;
 use media::phase::Phase;
 use numeric::geometry::{Aabb, Bounds, Point};
@@ -65,7 +65,7 @@ pub struct Truth {
     /// Sentences about parts of the case that are not in the scene.
     pub notes: Vec<String>,
     /// Expected samples, one entry per picture.
-    pub questions: Vec<Question>,
+    pub questions: Vec<ExpectedSamples>,
 }
 
 /// The samples of a field.
@@ -89,7 +89,7 @@ pub struct Samples {
 
 /// Expected samples of a picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Question {
+pub struct ExpectedSamples {
     /// Name of the quantity.
     pub name: String,
     /// Scene file.
@@ -104,14 +104,14 @@ pub struct Question {
     /// Effect of single precision on a sample, relative to the mean.
     pub rounding: f64,
     /// Distribution for integrators that find lights by scattering only.
-    pub without_emitter_sampling: Option<Sample>,
+    pub without_emitter_sampling: Option<SampleProperties>,
     /// Distribution for integrators that cast shadow rays.
-    pub with_emitter_sampling: Option<Sample>,
+    pub with_emitter_sampling: Option<SampleProperties>,
 }
 
 /// Known properties of the distribution of one sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct SampleProperties {
     /// Lower bound of all samples.
     pub low: Option<f64>,
     /// Upper bound of all samples.
@@ -136,22 +136,22 @@ impl Truth {
 }
 
 /// Returns the expected values of the pictures, by theory's prediction of the exported case.
-pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
+pub fn of(scene: &ExportedScene, prediction: &Prediction) -> Truth {
     let diagonal = (scene.bounds().high - scene.bounds().low).norm();
     let rounding = ROUNDINGS * f64::from(f32::EPSILON) * (1.0 + scene.peak() * diagonal);
-    let question = |(view, number): (&View, Option<usize>), channel: &theory::Channel| {
+    let question = |(view, number): (&ExportedView, Option<usize>), channel: &theory::Channel| {
         let [without, with] = samples(scene, view.light);
         let known = channel.moments.filter(|moments| moments.variance().is_finite());
-        let fill = |sample: Sample| Sample {
+        let fill = |sample: SampleProperties| SampleProperties {
             variance: sample.variance.or(known.map(|moments| moments.variance())),
             variance_error: sample.variance_error.or(known.and_then(|_| channel.moments_error())),
             kurtosis: known.and_then(|moments| moments.kurtosis()).filter(|k| k.is_finite()),
             ..sample
         };
-        let is_of = |sample: Option<(Sample, bool)>| {
+        let is_of = |sample: Option<(SampleProperties, bool)>| {
             sample.map(|(sample, is_known)| if is_known { fill(sample) } else { sample })
         };
-        Question {
+        ExpectedSamples {
             name: if number.is_some() { channel.name.clone() } else { view.name.to_owned() },
             scene: scene.file(view, number),
             channel: number,
@@ -192,8 +192,8 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
 /// omits channels that are always 0.
 fn channel_of<'a>(
     prediction: &'a Prediction,
-    scene: &Scene,
-    view: &View,
+    scene: &ExportedScene,
+    view: &ExportedView,
     number: Option<usize>,
 ) -> Option<&'a theory::Channel> {
     let Some(number) = number else {
@@ -213,22 +213,30 @@ fn channel_of<'a>(
 ///
 /// Without shadow rays a sample is `aⁿ` or 0. With them and weights that add up to at most 1, every scattering
 /// contributes at most `aⁿ`: `Σ aⁿ = 1/(1 − a)`.
-fn samples(scene: &Scene, light: Light) -> [Option<(Sample, bool)>; 2] {
-    let within = |high: Option<f64>| Sample { low: Some(0.0), high, ..Sample::default() };
-    let sure = Sample { variance: Some(0.0), variance_error: Some(0.0), ..Sample::default() };
+fn samples(scene: &ExportedScene, light: ExportedLight) -> [Option<(SampleProperties, bool)>; 2] {
+    let within = |high: Option<f64>| SampleProperties {
+        low: Some(0.0),
+        high,
+        ..SampleProperties::default()
+    };
+    let sure = SampleProperties {
+        variance: Some(0.0),
+        variance_error: Some(0.0),
+        ..SampleProperties::default()
+    };
     let albedo = scene.channels[0].albedo;
     let sum = (albedo < 1.0).then(|| 1.0 / (1.0 - albedo));
     if scene.target == Target::Pbrt {
         return [None, None];
     }
     if scene.is_coloured() {
-        let met = !matches!(light, Light::Point { .. });
+        let met = !matches!(light, ExportedLight::Point { .. });
         return [met.then(|| (within(None), false)), Some((within(None), false))];
     }
     match (scene.problem, light) {
         ("transmittance", _) => [Some((within(Some(1.0)), true)); 2],
         ("furnace", _) => [Some((sure, false)), Some((within(None), false))],
-        (_, Light::Point { .. }) => [None, Some((within(None), true))],
+        (_, ExportedLight::Point { .. }) => [None, Some((within(None), true))],
         ("slab", _) => [Some((within(Some(1.0)), true)), Some((within(sum), false))],
         _ => [Some((within(Some(1.0)), false)), Some((within(sum), false))],
     }
@@ -236,8 +244,8 @@ fn samples(scene: &Scene, light: Light) -> [Option<(Sample, bool)>; 2] {
 
 /// Returns the case file: the exported field, ray and light, and the estimator closest to a renderer's integrator.
 /// `trueflight run` and `trueflight bench` read it, so that both can be timed on the same field.
-pub fn case(scene: &Scene) -> String {
-    let Scene { direction, .. } = scene;
+pub fn case(scene: &ExportedScene) -> String {
+    let ExportedScene { direction, .. } = scene;
     let (problem, is_coloured) = (scene.problem, scene.is_coloured());
     let mut text = format!(
         "# {}, as `trueflight export --to {}` sampled it.\ntitle = {:?}\ndraws = 1_000_000\n\
@@ -277,13 +285,15 @@ pub fn case(scene: &Scene) -> String {
         line(format!("phase.{lobe}"));
     }
     match scene.views.first().map(|view| view.light) {
-        Some(Light::Point { position, power }) => {
+        Some(ExportedLight::Point { position, power }) => {
             line(format!("light = {{ position = {:?}, power = {power:?} }}", position.0));
         }
-        Some(Light::Core { radius }) => {
+        Some(ExportedLight::Core { radius }) => {
             line(format!("light.black-sphere = {{ radius = {radius:?} }}"));
         }
-        Some(Light::Everywhere) if problem == "ball" => line("light.environment = {}".into()),
+        Some(ExportedLight::Everywhere) if problem == "ball" => {
+            line("light.environment = {}".into());
+        }
         _ => {}
     }
     if scene.has_mirrors {
@@ -308,9 +318,9 @@ pub fn case(scene: &Scene) -> String {
 }
 
 /// Returns the volume of a channel in the case file.
-fn volume(scene: &Scene, channel: usize) -> String {
+fn volume(scene: &ExportedScene, channel: usize) -> String {
     let field = match &scene.channels[channel].field {
-        Field::Grid(grid) => {
+        ExportedField::Grid(grid) => {
             let rest = if grid.nearest {
                 "interpolation = \"nearest\"".to_owned()
             } else {
@@ -320,7 +330,7 @@ fn volume(scene: &Scene, channel: usize) -> String {
             let file = if own { file_of(channel) } else { GRID.to_owned() };
             format!("grid = {{ file = {file:?}, {rest}")
         }
-        Field::Even(extinction) => format!("constant = {{ extinction = {extinction:?}"),
+        ExportedField::Even(extinction) => format!("constant = {{ extinction = {extinction:?}"),
     };
     let bounds = match scene.shape {
         Bounds::Sphere { centre, radius } => {
@@ -345,12 +355,12 @@ fn phase(phase: Phase) -> String {
 
 /// Returns the reason why some renderers are biased or have infinite variance here, as far as theory knows one: those
 /// that track for one channel through the largest σ_t of all, without multiple importance sampling.
-pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
+pub fn remark(scene: &ExportedScene, folder: &Path) -> Option<String> {
     if !scene.is_coloured() || scene.is_homogeneous() || scene.problem != "transmittance" {
         return None;
     }
     let text = case(scene).replace("{ independent =", "{ hero =");
-    let source = Source { name: scene.case.clone(), path: folder.join(CASE), text };
+    let source = CaseText { name: scene.case.clone(), path: folder.join(CASE), text };
     let case = Case::read(&source).ok()?;
     let refusal = case.at(None).and_then(|at| at.prepare(0, case.pilots(1, 0))).err()?;
     Some(format!(
@@ -363,8 +373,8 @@ pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
 /// # Errors
 ///
 /// The reason why theory has no answer.
-pub fn ask(scene: &Scene, folder: &Path) -> Result<Prediction, ExportError> {
-    let case = Case::read(&Source::read(&folder.join(CASE))?)?;
+pub fn ask(scene: &ExportedScene, folder: &Path) -> Result<Prediction, ExportError> {
+    let case = Case::read(&CaseText::read(&folder.join(CASE))?)?;
     let ready = case.at(None).and_then(|at| at.prepare(0, case.pilots(1, 0)));
     let unknown = |why: String| ExportError::Unknown { case: scene.case.clone(), why };
     Ok(ready.map_err(|refusal| unknown(refusal.to_string()))?.prediction)

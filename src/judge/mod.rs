@@ -3,4 +3,6 @@
 mod of_case;
 
 pub use ::judge::*;
-pub use of_case::{Choice, ChoiceError, OfCase, estimators as estimators_of, theory as theory_of};
+pub use of_case::{
+    ChoiceError, ExperimentChoice, OfCase, estimators as estimators_of, theory as theory_of,
+};

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use super::whole::Known;
-use super::{Claim, Flights, Lookups, Theory};
+use super::whole::KnownDistribution;
+use super::{Claim, Lookups, RayFlights, Theory};
 use crate::case::Case;
 use crate::case::CaseError;
 use crate::case::Ready;
@@ -24,7 +24,7 @@ const TRIED: usize = 8;
 
 /// Choice of an experiment of a case.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Choice<'a> {
+pub struct ExperimentChoice<'a> {
     /// Estimator: its label in tables, or its name in the catalogue.
     pub estimator: &'a str,
     /// Swept value, if the estimator is swept.
@@ -101,11 +101,15 @@ pub enum ChoiceError {
 /// # Errors
 ///
 /// No experiment or several fit the choice, or the experiment is refused.
-pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, ChoiceError> {
+pub fn theory(
+    case: &Case,
+    choice: &ExperimentChoice,
+    rounding: f64,
+) -> Result<Theory, ChoiceError> {
     let (index, label) = find(case, choice.estimator)?;
     let axis = case.sweep.as_ref();
     let axis = axis.filter(|axis| case.scenario.depends_on(index, axis.what));
-    let at = Point { case, index, label: &label, axis, seed: choice.seed };
+    let at = SweptEstimator { case, index, label: &label, axis, seed: choice.seed };
     let variation = at.variation(choice)?;
     let prediction = at.prediction(variation)?;
     if let Some(deep) = prediction.channels.iter().find(|channel| channel.log_unit != 0.0) {
@@ -120,7 +124,7 @@ pub fn theory(case: &Case, choice: &Choice, rounding: f64) -> Result<Theory, Cho
         }
     }
     let channels = claims(case, &prediction, rounding);
-    let distribution = Arc::new(Known(Arc::new(prediction)));
+    let distribution = Arc::new(KnownDistribution(Arc::new(prediction)));
     Ok(Theory { channels, about, distribution })
 }
 
@@ -158,12 +162,13 @@ pub trait OfCase: Sized {
 
     /// Takes the claims from a case that was read before.
     #[must_use]
-    fn of_case(self, case: &Case, choice: &Choice) -> Self;
+    fn of_case(self, case: &Case, choice: &ExperimentChoice) -> Self;
 }
 
 impl<S> OfCase for Check<S> {
     fn of(self, case: &str, estimator: &str, swept: impl Into<Option<f64>>) -> Self {
-        let choice = Choice { estimator, swept: swept.into(), ..Choice::default() };
+        let choice =
+            ExperimentChoice { estimator, swept: swept.into(), ..ExperimentChoice::default() };
         match Catalogue::builtin().named(case) {
             Ok(read) => match &read[..] {
                 [case] => self.of_case(case, &choice),
@@ -180,7 +185,7 @@ impl<S> OfCase for Check<S> {
         }
     }
 
-    fn of_case(self, case: &Case, choice: &Choice) -> Self {
+    fn of_case(self, case: &Case, choice: &ExperimentChoice) -> Self {
         let theory = theory(case, choice, 0.0);
         self.theory(theory.map_err(|error| error.to_string()))
     }
@@ -191,7 +196,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
     let lookups = prediction.lookups.as_ref();
     let flights = match prediction.distribution {
         Some(Distribution::Distances { end, from, escape, .. }) => {
-            Some(Flights { length: end, from, escape })
+            Some(RayFlights { length: end, from, escape })
         }
         // Without a medium all flights leave the ray.
         None if case.problem == FLIGHTS => {
@@ -202,7 +207,7 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
                 let moments = channel.and_then(|channel| channel.moments);
                 moments.is_some_and(|m| m.variance().sqrt() <= SURE * length)
             };
-            length.filter(is_sure).map(|length| Flights { length, from: 0.0, escape: 1.0 })
+            length.filter(is_sure).map(|length| RayFlights { length, from: 0.0, escape: 1.0 })
         }
         _ => None,
     };
@@ -281,7 +286,7 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
 }
 
 /// Estimator of a case, with its swept quantity.
-struct Point<'a> {
+struct SweptEstimator<'a> {
     case: &'a Case,
     index: usize,
     label: &'a str,
@@ -289,9 +294,9 @@ struct Point<'a> {
     seed: u64,
 }
 
-impl Point<'_> {
+impl SweptEstimator<'_> {
     /// Returns the point of the sweep that is chosen.
-    fn variation(&self, choice: &Choice) -> Result<Variation, ChoiceError> {
+    fn variation(&self, choice: &ExperimentChoice) -> Result<Variation, ChoiceError> {
         let scenario = &self.case.scenario;
         let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
         match (self.axis, choice.swept) {

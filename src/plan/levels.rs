@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plan::Planned;
+use crate::plan::PlannedExperiment;
 use gate::session::{self, Reason, SIDE_SHARE, main_share};
 use gate::stats::normal;
 use gate::stats::verdict::Verdict;
@@ -67,7 +67,7 @@ pub struct Foreseen {
 
 impl Foreseen {
     /// Returns the best verdict on one channel of an experiment; `None` if the planned draws suffice for a pass.
-    pub fn of(planned: &Planned, channel: usize) -> Option<Self> {
+    pub fn of(planned: &PlannedExperiment, channel: usize) -> Option<Self> {
         let about = planned.questions.iter().filter(|q| q.channel.is_none_or(|one| one == channel));
         // A bias that must be shown needs no pass.
         let promised = about.filter(|q| !q.expects_bias || q.answer.scalar().is_none());

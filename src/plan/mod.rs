@@ -22,8 +22,8 @@ use crate::case::{Case, Ready};
 use crate::plan::levels::Levels;
 use ::gate::stats::gate;
 use ::gate::stats::verdict::{BLOCK, Verdict};
-use checks::check::Share;
-use checks::{self, Pilot, Question, Scalar, Subject};
+use checks::check::ErrorShare;
+use checks::{self, Pilot, Question, ScalarCheck, Subject};
 use estimators::{DrawBuffer, Knowledge, Refusal};
 use numeric::pack::WIDTH;
 use numeric::rng::{Address, PILOT, Streams};
@@ -47,11 +47,11 @@ pub struct PlannedCase<'a> {
     /// The case.
     pub case: &'a Case,
     /// Its experiments: estimators in the order of the case, each over the sweep.
-    pub experiments: Vec<Planned>,
+    pub experiments: Vec<PlannedExperiment>,
 }
 
 /// One experiment.
-pub struct Planned {
+pub struct PlannedExperiment {
     /// Number of the experiment in the plan, from 0.
     pub number: u32,
     /// Index of the estimator in the case.
@@ -82,9 +82,9 @@ pub struct Planned {
     pub find_streams: fn(Address) -> Streams,
 }
 
-impl Planned {
+impl PlannedExperiment {
     /// Returns the questions that go through the gate.
-    pub fn scalars(&self) -> impl Iterator<Item = (&Question, &Scalar)> {
+    pub fn scalars(&self) -> impl Iterator<Item = (&Question, &ScalarCheck)> {
         self.questions.iter().filter_map(|question| Some((question, question.answer.scalar()?)))
     }
 
@@ -160,10 +160,10 @@ impl<'a> Plan<'a> {
         for experiment in cases.iter().flat_map(|case| &case.experiments) {
             for question in &experiment.questions {
                 match question.answer.share() {
-                    Share::Gate if question.expects_bias => counts[2] += 1,
-                    Share::Gate => counts[0] += 1,
-                    Share::PValues => counts[1] += 1,
-                    Share::Nothing => {}
+                    ErrorShare::Gate if question.expects_bias => counts[2] += 1,
+                    ErrorShare::Gate => counts[0] += 1,
+                    ErrorShare::PValues => counts[1] += 1,
+                    ErrorShare::Nothing => {}
                 }
             }
         }
@@ -178,7 +178,7 @@ impl<'a> Plan<'a> {
             experiments.into_iter().map(move |planned| (case, planned))
         });
         all.map(move |(case, planned)| {
-            let experiments = vec![Planned { number: 0, same_as: None, ..planned }];
+            let experiments = vec![PlannedExperiment { number: 0, same_as: None, ..planned }];
             Self {
                 options: options.clone(),
                 cases: vec![PlannedCase { case, experiments }],
@@ -196,7 +196,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Returns all experiments with their case.
-    pub fn experiments(&self) -> impl Iterator<Item = (&PlannedCase<'a>, &Planned)> {
+    pub fn experiments(&self) -> impl Iterator<Item = (&PlannedCase<'a>, &PlannedExperiment)> {
         let mut all = Vec::new();
         for case in &self.cases {
             for planned in &case.experiments {
@@ -231,14 +231,14 @@ fn plan_experiment(
     case: &Case,
     options: &Options,
     (estimator, variation): (usize, Variation),
-) -> Planned {
+) -> PlannedExperiment {
     let most = options.draws.of(case.draws);
     let address = case.address(options.seed, estimator, variation);
     let pilots = case.pilots(options.seed, estimator);
     let at = case.at(variation);
     let needs = at.as_ref().map_or_else(|_| Vec::new(), |at| at.needs(estimator));
     let outcome = at.and_then(|at| at.prepare(estimator, pilots));
-    Planned {
+    PlannedExperiment {
         number: 0,
         estimator,
         id: case.id(estimator, variation),
@@ -256,7 +256,7 @@ fn plan_experiment(
     }
 }
 
-impl Planned {
+impl PlannedExperiment {
     /// Returns whether two experiments make the same draws, and have the same questions.
     fn is_same(&self, other: &Self) -> bool {
         let of = |one: &Self| (one.address, one.draws, one.fixed, one.horizon, one.expect_biased);
@@ -295,7 +295,7 @@ impl Planned {
             subject.fixed = subject.draws;
         }
         let mut questions = checks::questions(&subject);
-        let decides = |question: &Question| question.answer.share() != Share::Nothing;
+        let decides = |question: &Question| question.answer.share() != ErrorShare::Nothing;
         let is_certain = !questions.iter().any(decides);
         if is_certain {
             // Draws without randomness are all equal: one pack is enough.

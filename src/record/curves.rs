@@ -7,12 +7,12 @@ use crate::case::Case;
 use crate::case::id::ExperimentId;
 use crate::case::sweep::{SweepAxis, SweptQuantity, Variation};
 use crate::draw::block::DrawnExperiment;
-use crate::plan::{Planned, PlannedCase};
+use crate::plan::{PlannedCase, PlannedExperiment};
 use crate::record::theory::finite;
 use ::theory::Channel;
 use ::theory::parallel;
 use ::theory::prediction::optimum::{Optimum, best_constants};
-use ::theory::prediction::search::Kind;
+use ::theory::prediction::search::PlaceKind;
 
 /// Axis of a sweep and the predicted curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -26,12 +26,12 @@ pub struct Sweep {
     /// z-score with the two-sided probability of a false alarm of the gate.
     pub z_limit: Option<f64>,
     /// One curve per estimator and channel; none if nothing is drawn.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PredictedCurve>,
 }
 
 /// Predictions of one channel of an estimator along the sweep.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Curve {
+pub struct PredictedCurve {
     /// The estimator's label at the first value of the sweep.
     pub estimator: String,
     /// Index of the estimator in the case's list, which its experiments share.
@@ -57,7 +57,7 @@ pub struct Best {
     /// The figure of merit there; `None` where it is infinite.
     pub fom: Option<f64>,
     /// Kind of this σ̂.
-    pub kind: Kind,
+    pub kind: PlaceKind,
     /// Limit of the figure of merit, if it rises with σ̂ to one.
     pub limit: Option<f64>,
 }
@@ -65,7 +65,7 @@ pub struct Best {
 impl Best {
     /// Returns whether the figure of merit is largest there.
     pub fn is_optimum(&self) -> bool {
-        self.kind == Kind::Optimum
+        self.kind == PlaceKind::Optimum
     }
 }
 
@@ -131,13 +131,13 @@ pub struct MeasuredPoint {
 const POINTS: usize = 48;
 
 /// Returns the curves of a case; none without a sweep. Each takes fifty predictions.
-pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
+pub fn curves(case: &Case, seed: u64) -> Vec<PredictedCurve> {
     let Some(axis) = &case.sweep else { return Vec::new() };
     let swept = (0..case.scenario.estimators()).filter(|&i| case.scenario.depends_on(i, axis.what));
     let swept: Vec<usize> = swept.collect();
     let x = abscissae(axis);
     let (low, high) = ends(&x);
-    let curves: Vec<Vec<Curve>> = parallel::map(&swept, |&estimator| {
+    let curves: Vec<Vec<PredictedCurve>> = parallel::map(&swept, |&estimator| {
         let predicted: Vec<Vec<(String, Option<CurvePoint>)>> =
             parallel::map(&x, |&x| points(case, seed, estimator, Some((axis.what, x)), x));
         let id = case.id(estimator, axis.values.first().map(|&x| (axis.what, x)));
@@ -153,14 +153,15 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
         };
         let named = predicted.iter().max_by_key(|channels| channels.len());
         let named = named.map_or(&[][..], Vec::as_slice);
-        let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
-            channel: channel.clone(),
-            points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
-            optimum: optimum(index),
-            best: found(index).map(named_best),
-            ..without_points(&id, estimator)
-        };
-        let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
+        let curve =
+            |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| PredictedCurve {
+                channel: channel.clone(),
+                points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
+                optimum: optimum(index),
+                best: found(index).map(named_best),
+                ..without_points(&id, estimator)
+            };
+        let curves: Vec<PredictedCurve> = named.iter().enumerate().map(curve).collect();
         if curves.is_empty() { vec![without_points(&id, estimator)] } else { curves }
     });
     curves.into_iter().flatten().collect()
@@ -178,9 +179,9 @@ pub fn axis(case: &Case) -> Option<Sweep> {
 pub fn best_of_each<'p>(
     case: &'p PlannedCase,
     seed: u64,
-) -> Vec<(&'p Planned, Vec<Option<Optimum>>)> {
+) -> Vec<(&'p PlannedExperiment, Vec<Option<Optimum>>)> {
     // Experiments that differ in σ̂ only have the same best σ̂.
-    let asked = |planned: &Planned| {
+    let asked = |planned: &PlannedExperiment| {
         let is_of_sampling = |(what, _): &(SweptQuantity, f64)| {
             matches!(what, SweptQuantity::Sampling | SweptQuantity::SamplingScale)
         };
@@ -191,7 +192,7 @@ pub fn best_of_each<'p>(
     let found = parallel::map(&questions, |&(estimator, variation)| {
         ((estimator, variation), best(case.case, seed, estimator, variation))
     });
-    let answer = |planned: &'p Planned| {
+    let answer = |planned: &'p PlannedExperiment| {
         let answer = found.iter().find(|(question, _)| *question == asked(planned));
         (planned, answer.map_or(Vec::new(), |(_, best)| best.clone()))
     };
@@ -212,10 +213,10 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
 }
 
 /// Returns the curve of an estimator without points, as if it is refused everywhere.
-fn without_points(id: &ExperimentId, listed: usize) -> Curve {
+fn without_points(id: &ExperimentId, listed: usize) -> PredictedCurve {
     let (estimator, control) = (id.estimator.to_string(), id.control.clone());
     let (channel, points) = (String::new(), Vec::new());
-    Curve { estimator, listed, control, channel, points, optimum: None, best: None }
+    PredictedCurve { estimator, listed, control, channel, points, optimum: None, best: None }
 }
 
 /// Converts the best σ̂ for a record.

@@ -12,9 +12,9 @@
 
 use crate::case::Ready;
 use crate::draw::block::{DrawnExperiment, Draws};
-use crate::plan::{Plan, Planned};
+use crate::plan::{Plan, PlannedExperiment};
 use crate::record::{Finding, Verdict};
-use checks::check::{Context, Found, Look, Total};
+use checks::check::{CheckResult, Context, Look, Total};
 use checks::{Inspected, Question};
 use gate::CheckId;
 use gate::deviation::Deviation;
@@ -69,7 +69,7 @@ fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
             expects_bias: false,
             channel: String::new(),
             z: None,
-            found: Found::new(Verdict::Inconclusive, Some(Reason::NothingDrawn)),
+            found: CheckResult::new(Verdict::Inconclusive, Some(Reason::NothingDrawn)),
         }];
     }
     let Ok(ready) = &planned.outcome else { return Vec::new() };
@@ -123,7 +123,7 @@ fn finding(
         expects_bias: question.expects_bias,
         channel: channel.map_or(String::new(), |channel| channel.name.clone()),
         z: None,
-        found: Found { path: thinned(&found.path), ..found },
+        found: CheckResult { path: thinned(&found.path), ..found },
     }
 }
 
@@ -144,7 +144,7 @@ fn judge_distributions(plan: &Plan, findings: &mut [&mut Finding]) {
 
 /// Combines the verdict on each mean with that on the variance of its channel, see [`session::beside_variance`]. The
 /// variance of pilot draws cannot be tested.
-fn qualify_means(planned: &Planned, findings: &mut [Finding]) {
+fn qualify_means(planned: &PlannedExperiment, findings: &mut [Finding]) {
     let open =
         |finding: &&Finding| finding.check == CheckId::Variance && finding.verdict != Verdict::Pass;
     let variances = findings

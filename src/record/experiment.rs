@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use checks::check::Found;
+use checks::check::CheckResult;
 use estimators::{Knowledge, Refusal};
 use gate::CheckId;
 use numeric::Grade;
@@ -234,19 +234,19 @@ pub struct Finding {
     pub z: Option<f64>,
     /// The result of the check; a finding dereferences to it.
     #[serde(flatten)]
-    pub found: Found,
+    pub found: CheckResult,
 }
 
 impl Deref for Finding {
-    type Target = Found;
+    type Target = CheckResult;
 
-    fn deref(&self) -> &Found {
+    fn deref(&self) -> &CheckResult {
         &self.found
     }
 }
 
 impl DerefMut for Finding {
-    fn deref_mut(&mut self) -> &mut Found {
+    fn deref_mut(&mut self) -> &mut CheckResult {
         &mut self.found
     }
 }

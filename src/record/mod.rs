@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::case::Course;
 use crate::case::sweep::SweptQuantity;
-pub use crate::record::curves::{Anatomy, Best, Curve, CurvePoint, MeasuredPoint, Sweep};
+pub use crate::record::curves::{Anatomy, Best, CurvePoint, MeasuredPoint, PredictedCurve, Sweep};
 pub use experiment::{ChannelRecord, ExperimentRecord, Finding, Score, Spent};
 pub use gate::stats::verdict::{GateFinding, Verdict};
 

@@ -3,7 +3,7 @@
 use crate::case::suite;
 use crate::plan::levels::Foreseen;
 use crate::plan::options::Options;
-use crate::plan::{Filter, Plan, Planned, PlannedCase};
+use crate::plan::{Filter, Plan, PlannedCase, PlannedExperiment};
 use crate::record::{Finding, Verdict};
 use numeric::digits::enough;
 
@@ -29,7 +29,7 @@ fn place(case: &PlannedCase) -> String {
 }
 
 /// Returns the pattern of an experiment's estimator. Namesakes are numbered by the plan; a filter gives them one name.
-fn pattern(planned: &Planned) -> String {
+fn pattern(planned: &PlannedExperiment) -> String {
     format!("*:{}", planned.id.estimator)
 }
 
@@ -43,7 +43,7 @@ fn flags(options: &Options) -> String {
     own.fold(String::new(), |flags, word| flags + " " + &word.replacen('=', " ", 1))
 }
 
-fn check(plan: &Plan, case: &PlannedCase, planned: &Planned, draws: &str) -> String {
+fn check(plan: &Plan, case: &PlannedCase, planned: &PlannedExperiment, draws: &str) -> String {
     let (place, filter) = (place(case), quoted(&pattern(planned)));
     let (seed, flags) = (plan.options.seed, flags(&plan.options));
     format!(
@@ -52,7 +52,7 @@ fn check(plan: &Plan, case: &PlannedCase, planned: &Planned, draws: &str) -> Str
 }
 
 /// Returns the command that draws an experiment again, and writes nothing.
-pub fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
+pub fn command(plan: &Plan, case: &PlannedCase, planned: &PlannedExperiment) -> String {
     check(plan, case, planned, &planned.draws.to_string())
 }
 
@@ -61,7 +61,7 @@ pub fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
 pub fn deciding(
     plan: &Plan,
     case: &PlannedCase,
-    planned: &Planned,
+    planned: &PlannedExperiment,
     findings: &[Finding],
 ) -> String {
     let Some(own) = decisive_draws(case, planned, findings) else { return String::new() };
@@ -97,7 +97,11 @@ pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
 }
 
 /// Returns the number of draws that decide an experiment; `None` if no number does.
-fn decisive_draws(case: &PlannedCase, planned: &Planned, findings: &[Finding]) -> Option<f64> {
+fn decisive_draws(
+    case: &PlannedCase,
+    planned: &PlannedExperiment,
+    findings: &[Finding],
+) -> Option<f64> {
     planned.outcome.as_ref().ok()?;
     let mut draws = planned.draws as f64;
     for channel in 0..planned.channels() {

@@ -1,7 +1,7 @@
 //! Predictions and statistics of an experiment, for a record.
 
 use crate::draw::block::DrawnExperiment;
-use crate::plan::{Planned, PlannedCase};
+use crate::plan::{PlannedCase, PlannedExperiment};
 use crate::record::{ChannelRecord, Course, ExperimentRecord, Score, Verdict};
 use checks::normality::{Tails, needed};
 use estimators::Refusal;
@@ -13,7 +13,7 @@ use theory::{Channel, CountDistribution, Prediction};
 const MAX_DISTRIBUTION: usize = 100;
 
 /// Returns an experiment of a case with the predictions of each channel, or with the reason of its refusal.
-pub fn predicted(case: &PlannedCase, planned: &Planned) -> ExperimentRecord {
+pub fn predicted(case: &PlannedCase, planned: &PlannedExperiment) -> ExperimentRecord {
     let blank = ExperimentRecord {
         id: planned.id.clone(),
         label: planned.id.label(),
@@ -86,7 +86,7 @@ fn of_channel(channel: &Channel, cost: Option<f64>) -> ChannelRecord {
 }
 
 /// Returns the fields along the ray, which show where an inequality fails.
-fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Course> {
+fn courses(case: &PlannedCase, planned: &PlannedExperiment, refusal: &Refusal) -> Vec<Course> {
     let place = match refusal {
         Refusal::Inequality { at, .. } => Some(*at),
         _ => None,

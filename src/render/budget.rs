@@ -41,7 +41,7 @@ pub struct PixelDraws {
 
 /// Number of draws of each pixel, fixed before the first.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct PixelPlan {
     draws: f64,
     /// The lookups of a control, for each pixel.
     points: Vec<u64>,
@@ -67,7 +67,7 @@ pub struct PixelValues {
     pub pilots: u64,
 }
 
-impl Plan {
+impl PixelPlan {
     /// Shares `budget` lookups per pixel among draws.
     pub fn new<'a>(
         forecasts: impl Iterator<Item = &'a Result<Forecast, String>>,
@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn pixels_share_the_draws_evenly() {
         let forecasts: [Asked; 2] = [Ok(of(6.0)), Ok(of(10.0))];
-        let plan = Plan::new(forecasts.iter(), 4, 24).expect("2.5 draws");
+        let plan = PixelPlan::new(forecasts.iter(), 4, 24).expect("2.5 draws");
         let draws: Vec<u64> = (0..6).map(|i| plan.draws_of(i)).collect();
         assert_eq!(draws, [2, 3, 2, 3, 2, 3]);
     }
@@ -170,24 +170,24 @@ mod tests {
     #[test]
     fn a_shared_control_is_paid_once() {
         let follower: Asked = Ok(Forecast { leads: false, ..of(5.0) });
-        let plan = Plan::new([Ok(of(5.0)), follower].iter(), 20, 20).expect("2 draws");
+        let plan = PixelPlan::new([Ok(of(5.0)), follower].iter(), 20, 20).expect("2 draws");
         assert_eq!((plan.draws, plan.points), (2.0, vec![20, 0]));
     }
 
     #[test]
     fn a_draw_that_costs_more_than_there_is_and_one_that_costs_nothing_are_refused() {
-        let error = Plan::new([Ok(of(30.0))].iter(), 0, 20).expect_err("too dear");
+        let error = PixelPlan::new([Ok(of(30.0))].iter(), 0, 20).expect_err("too dear");
         assert!(error.contains("30 lookups"), "{error}");
-        let error = Plan::new([Ok(of(0.0))].iter(), 0, 20).expect_err("free");
+        let error = PixelPlan::new([Ok(of(0.0))].iter(), 0, 20).expect_err("free");
         assert!(error.contains("looks nothing up"), "{error}");
         let refused = Err("pixel (0, 0) needs more".to_owned());
-        let error = Plan::new([refused].iter(), 0, 20).expect_err("refused");
+        let error = PixelPlan::new([refused].iter(), 0, 20).expect_err("refused");
         assert!(error.contains("pixel (0, 0)"), "{error}");
     }
 
     #[test]
     fn a_pixel_knows_its_standard_error() {
-        let plan = Plan::new([Ok(of(5.0))].iter(), 0, 20).expect("4 draws");
+        let plan = PixelPlan::new([Ok(of(5.0))].iter(), 0, 20).expect("4 draws");
         let pixel =
             PixelDraws { draws: 4, sum: [2.0, 4.0, 0.0], squares: [2.0, 4.0, 0.0], lookups: 18 };
         let found = plan.gather(3, &[pixel]);

@@ -47,10 +47,10 @@ pub(crate) mod view;
 
 use std::path::Path;
 
-use self::scene::{Request, Scene};
+use self::scene::{PictureScene, RenderRequest};
 use self::subject::SUBJECTS;
 use crate::case::spec::BuiltIn;
-use crate::case::{CaseError, Source, Spec};
+use crate::case::{CaseError, CaseText, Spec};
 use media::catalogue::{OwnPages, Page, Settings};
 
 pub use record::PictureRecord;
@@ -68,7 +68,7 @@ pub struct Picture {
     pub caption: String,
     /// The problem's name in the catalogue.
     pub problem: String,
-    scene: Scene,
+    scene: PictureScene,
 }
 
 impl Picture {
@@ -77,11 +77,11 @@ impl Picture {
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read(source: &Source, own_pages: &OwnPages) -> Result<Self, CaseError> {
+    pub fn read(source: &CaseText, own_pages: &OwnPages) -> Result<Self, CaseError> {
         Spec::parse(source, own_pages)?.read(|root| Self::from_root(source, root))
     }
 
-    fn from_root(source: &Source, root: &Settings) -> Option<Self> {
+    fn from_root(source: &CaseText, root: &Settings) -> Option<Self> {
         if let (Some(case), false) = (root.entry("problem"), root.has("picture")) {
             let help = "run it with `trueflight run`; a picture has `[picture.NAME]`";
             root.fault_at(case.key_span.clone(), "", "this is a case, not a picture", help);
@@ -93,7 +93,7 @@ impl Picture {
         names.dedup();
         let chosen = root.chosen("picture", &names);
         let scene = chosen.and_then(|(index, settings)| {
-            let scene = Scene::read(subject::kind(&names[index], &settings)?, &settings);
+            let scene = PictureScene::read(subject::kind(&names[index], &settings)?, &settings);
             settings.close();
             Some((names[index].clone(), scene?))
         });
@@ -110,7 +110,7 @@ impl Picture {
     pub fn open(name: &str, own_pages: &OwnPages) -> Result<Self, CaseError> {
         match find(name) {
             Some(source) if !Path::new(name).exists() => Self::read(&source, own_pages),
-            _ => Self::read(&Source::read(Path::new(name))?, own_pages),
+            _ => Self::read(&CaseText::read(Path::new(name))?, own_pages),
         }
     }
 
@@ -121,7 +121,7 @@ impl Picture {
 
     /// Renders the picture with a seed; `progress` is called after every row, twice.
     pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
-        let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
+        let rendered = self.scene.render(&RenderRequest { seed, name: &self.name, progress });
         let words = [&self.name, &self.title, &self.caption, &self.problem];
         PictureRecord::new(words, &self.scene.view, rendered)
     }
@@ -150,11 +150,11 @@ const PICTURES: BuiltIn = pictures![
 ];
 
 /// Returns every built-in picture, in the order of the gallery.
-pub fn gallery() -> Vec<Source> {
+pub fn gallery() -> Vec<CaseText> {
     PICTURES.all()
 }
 
 /// Returns the built-in picture of a name.
-pub fn find(name: &str) -> Option<Source> {
+pub fn find(name: &str) -> Option<CaseText> {
     PICTURES.find(name)
 }

@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
-use super::budget::{PixelDraws, PixelValues, Plan};
+use super::budget::{PixelDraws, PixelPlan, PixelValues};
 use super::pixel::{Label, Listed, Pixel};
-use super::subject::{RayOf, Subject, SubjectKind};
+use super::subject::{PictureSubject, RayOf, SubjectKind};
 use super::view::View;
 use crate::case::estimator::{self, Defaults, Estimators, ParsedEstimator};
 use estimators::trial::Entry;
@@ -15,7 +15,7 @@ use numeric::rng::{Address, name_hash};
 use theory::parallel;
 
 /// Options of a rendering.
-pub struct Request<'a> {
+pub struct RenderRequest<'a> {
     /// The seed of all random numbers.
     pub seed: u64,
     /// The picture's name.
@@ -39,7 +39,7 @@ pub struct Rendered {
 }
 
 /// Volume, camera and estimators of one problem.
-pub struct Scene {
+pub struct PictureScene {
     /// The camera's view.
     pub view: View,
     kind: &'static SubjectKind,
@@ -49,7 +49,7 @@ pub struct Scene {
     reference: Reference,
 }
 
-impl Scene {
+impl PictureScene {
     /// Reads the settings of `[picture.NAME]`.
     pub fn read(kind: &'static SubjectKind, settings: &Settings) -> Option<Self> {
         let view = View::read(settings, kind.shows_sky, kind.channels > 1);
@@ -104,7 +104,7 @@ impl Scene {
     }
 
     /// Returns the estimators, and after them that of the reference if it is drawn.
-    fn listed(&self, request: &Request) -> Vec<Listed<'_>> {
+    fn listed(&self, request: &RenderRequest) -> Vec<Listed<'_>> {
         let mut listed: Vec<Listed> = Vec::new();
         let reference = match &self.reference {
             Reference::Draws { lookups, parsed } => Some((&**parsed, *lookups, "reference")),
@@ -128,7 +128,7 @@ impl Scene {
     }
 
     /// Plans and draws.
-    pub fn render(&self, request: &Request) -> Rendered {
+    pub fn render(&self, request: &RenderRequest) -> Rendered {
         let covered: Vec<usize> =
             (0..self.view.pixels()).filter(|&pixel| self.view.covered(pixel).is_some()).collect();
         let (listed, estimators) = (self.listed(request), &self.estimators);
@@ -139,12 +139,12 @@ impl Scene {
         });
         let plan = |(index, listed): (usize, &Listed)| {
             let points = estimators.control_of(listed.parsed).lookups();
-            Plan::new(forecasts.iter().map(|all| &all[index]), points, listed.lookups)
+            PixelPlan::new(forecasts.iter().map(|all| &all[index]), points, listed.lookups)
         };
-        let plans: Vec<Result<Plan, String>> = listed.iter().enumerate().map(plan).collect();
+        let plans: Vec<Result<PixelPlan, String>> = listed.iter().enumerate().map(plan).collect();
         // Second pass: the draws.
         let pixels = self.over(&covered, request.progress, |number, pixel| {
-            let draw = |(listed, plan): (&Listed, &Result<Plan, String>)| {
+            let draw = |(listed, plan): (&Listed, &Result<PixelPlan, String>)| {
                 let draws = plan.as_ref().ok()?.draws_of(number);
                 pixel.draw(number, estimators, listed, draws)
             };
@@ -197,7 +197,7 @@ pub type ReferenceOf<P> = (Reference, Option<Box<dyn Entry<P>>>);
 impl Reference {
     /// Reads `reference`, with the entry that makes its draws if it is drawn. Its estimator takes the picture's σ̂ if
     /// it needs one.
-    pub fn read<P: Subject>(
+    pub fn read<P: PictureSubject>(
         settings: &Settings,
         has_exact: bool,
         body: Option<&Body>,

@@ -25,7 +25,7 @@ use theory::problems::{
 use theory::single::quick;
 
 /// Problem that pictures show.
-pub trait Subject: Estimated {
+pub trait PictureSubject: Estimated {
     /// Data that all its rays share, beside the volume.
     type Shared: Send + Sync;
 
@@ -113,7 +113,7 @@ pub fn kind(name: &str, settings: &Settings) -> Option<&'static SubjectKind> {
 }
 
 impl SubjectKind {
-    const fn of<P: Subject>(name: &'static str) -> Self {
+    const fn of<P: PictureSubject>(name: &'static str) -> Self {
         Self {
             name,
             options: P::OPTIONS,
@@ -127,7 +127,7 @@ impl SubjectKind {
     }
 }
 
-fn read<P: Subject>(
+fn read<P: PictureSubject>(
     settings: &Settings,
     view: Option<&View>,
     body: Option<&Body>,
@@ -176,17 +176,17 @@ struct OneRay<P> {
     entries: Arc<Vec<Box<dyn Entry<P>>>>,
 }
 
-impl<P: Subject> AnyRay for OneRay<P> {
+impl<P: PictureSubject> AnyRay for OneRay<P> {
     fn media(&self) -> &[Medium] {
         self.problem.media()
     }
 
     fn exact(&self) -> Option<Vec<Known>> {
-        Subject::exact(&*self.problem)
+        PictureSubject::exact(&*self.problem)
     }
 
     fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
-        Subject::by_quadrature(&*self.problem, panels)
+        PictureSubject::by_quadrature(&*self.problem, panels)
     }
 
     fn join(&self, estimator: usize, parts: Parts) -> Result<Box<dyn Joined>, Refusal> {
@@ -194,7 +194,7 @@ impl<P: Subject> AnyRay for OneRay<P> {
     }
 }
 
-impl Subject for Transmittance {
+impl PictureSubject for Transmittance {
     type Shared = ();
 
     const BEFORE_SKY: bool = true;
@@ -222,7 +222,7 @@ impl Subject for Transmittance {
     }
 }
 
-impl Subject for SpectralTransmittance {
+impl PictureSubject for SpectralTransmittance {
     type Shared = ();
 
     const BEFORE_SKY: bool = true;
@@ -268,7 +268,7 @@ fn transmittance_by_quadrature(medium: &Medium, panels: usize) -> Known {
     Known::estimated(fine, (fine - transmittance(panels)).abs())
 }
 
-impl Subject for SingleScattering {
+impl PictureSubject for SingleScattering {
     type Shared = Lit;
 
     const BEFORE_SKY: bool = false;
@@ -295,7 +295,7 @@ impl Subject for SingleScattering {
     }
 }
 
-impl Subject for MultipleScattering {
+impl PictureSubject for MultipleScattering {
     type Shared = Sunlit;
 
     const BEFORE_SKY: bool = false;

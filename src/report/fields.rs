@@ -5,9 +5,9 @@ mod files;
 use serde::Serialize;
 use serde::ser::Serializer;
 
-use crate::report::layout::{self, Column, Grid, Pen};
-use crate::report::run::summary_csv::Line;
-pub use files::{Named, artifact, columns, csv, described, json, markdown, object, objects};
+use crate::report::layout::{self, Column, Pen, TableLayout};
+use crate::report::run::summary_csv::SummaryRow;
+pub use files::{NamedPairs, artifact, columns, csv, described, json, markdown, object, objects};
 use numeric::digits::{count, enough, fixed, number, percent, short, signed, time};
 
 /// Content of one field.
@@ -169,7 +169,7 @@ impl<T> Field<T> {
     pub fn column(&self, rows: &[T], rank: u8) -> Column {
         let mut fields = Vec::with_capacity(rows.len());
         for row in rows {
-            fields.push(layout::Field::plain(self.text(row)));
+            fields.push(layout::LayoutField::plain(self.text(row)));
         }
         Column { head: self.head, right: self.is_numeric(rows), rank, fields }
     }
@@ -190,7 +190,7 @@ impl<T> Field<T> {
 fn tip(name: &str, unit: &str, own: &'static str) -> String {
     let mut meaning = own;
     if meaning.is_empty() {
-        let of_run = Line::fields().into_iter().find(|field| field.name == name);
+        let of_run = SummaryRow::fields().into_iter().find(|field| field.name == name);
         meaning = of_run.map_or("", |field| field.meaning);
     }
     let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
@@ -258,9 +258,9 @@ const fn is_same(a: &str, b: &str) -> bool {
 }
 
 /// Returns the table of rows for a console, with these columns.
-pub fn grid<T: Table>(rows: &[T], columns: &[Shown]) -> Grid {
+pub fn grid<T: Table>(rows: &[T], columns: &[Shown]) -> TableLayout {
     let fields = T::fields();
-    let mut grid = Grid { columns: Vec::with_capacity(columns.len()) };
+    let mut grid = TableLayout { columns: Vec::with_capacity(columns.len()) };
     for shown in columns {
         grid.columns.push(fields[shown.place].column(rows, shown.rank));
     }
@@ -278,7 +278,7 @@ pub fn judged<T: Table>(
     let mut grid = grid(rows, columns);
     let mut judged = Vec::with_capacity(rows.len());
     for row in rows {
-        judged.push(layout::Field::judged(is_good(row), words));
+        judged.push(layout::LayoutField::judged(is_good(row), words));
     }
     grid.push(head, judged);
     grid.fit(pen.width);

@@ -37,7 +37,7 @@ pub struct Test {
 #[derive(Debug)]
 pub struct Trouble {
     /// Element.
-    pub kind: Kind,
+    pub kind: ResultKind,
     /// Type, in one word.
     pub word: &'static str,
     /// Reason, on one line.
@@ -48,7 +48,7 @@ pub struct Trouble {
 
 /// Kind of a result that is no success.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ResultKind {
     /// The test found a defect.
     Failure,
     /// The test could not do its work.
@@ -57,7 +57,7 @@ pub enum Kind {
     Skipped,
 }
 
-impl Kind {
+impl ResultKind {
     fn word(self) -> &'static str {
         match self {
             Self::Failure => "failure",
@@ -70,33 +70,33 @@ impl Kind {
 /// Returns the suites as a file, with the time of all of them, if it is known. The schema has no count of skipped tests
 /// at the root; the suites have theirs.
 pub fn text(suites: &[Suite], time: Option<Duration>) -> String {
-    let mut page = Page::default();
+    let mut page = XmlDocument::default();
     page.text.push_str("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
     let sum = |kind| suites.iter().map(|suite| suite.count(kind)).sum::<usize>();
     let tests: usize = suites.iter().map(|suite| suite.tests.len()).sum();
     page.start("testsuites");
     page.attribute("name", "trueflight");
     page.attribute("tests", &tests.to_string());
-    page.attribute("failures", &sum(Kind::Failure).to_string());
-    page.attribute("errors", &sum(Kind::Error).to_string());
+    page.attribute("failures", &sum(ResultKind::Failure).to_string());
+    page.attribute("errors", &sum(ResultKind::Error).to_string());
     page.time(time);
     page.within("testsuites", |page| suites.iter().for_each(|suite| suite.write(page)));
     page.text + "\n"
 }
 
 impl Suite {
-    fn count(&self, kind: Kind) -> usize {
+    fn count(&self, kind: ResultKind) -> usize {
         let kinds = self.tests.iter().filter_map(|test| test.trouble.as_ref());
         kinds.filter(|trouble| trouble.kind == kind).count()
     }
 
-    fn write(&self, page: &mut Page) {
+    fn write(&self, page: &mut XmlDocument) {
         page.start("testsuite");
         page.attribute("name", &self.name);
         page.attribute("tests", &self.tests.len().to_string());
-        page.attribute("skipped", &self.count(Kind::Skipped).to_string());
-        page.attribute("errors", &self.count(Kind::Error).to_string());
-        page.attribute("failures", &self.count(Kind::Failure).to_string());
+        page.attribute("skipped", &self.count(ResultKind::Skipped).to_string());
+        page.attribute("errors", &self.count(ResultKind::Error).to_string());
+        page.attribute("failures", &self.count(ResultKind::Failure).to_string());
         page.time(self.time);
         if self.properties.is_empty() && self.tests.is_empty() && self.output.is_none() {
             return page.end_empty();
@@ -120,7 +120,7 @@ impl Suite {
 }
 
 impl Test {
-    fn write(&self, page: &mut Page) {
+    fn write(&self, page: &mut XmlDocument) {
         page.start("testcase");
         page.attribute("name", &self.name);
         if let Some(class) = &self.class {
@@ -147,12 +147,12 @@ impl Test {
 
 /// XML so far: an element a line, indented by its depth.
 #[derive(Default)]
-struct Page {
+struct XmlDocument {
     text: String,
     depth: usize,
 }
 
-impl Page {
+impl XmlDocument {
     fn line(&mut self) {
         self.text.push('\n');
         self.text.extend(std::iter::repeat_n("    ", self.depth));
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn text_becomes_no_markup_and_has_only_characters_of_xml() {
-        let mut page = Page::default();
+        let mut page = XmlDocument::default();
         page.escape("<a b=\"c\" d='e'>&amp; ]]>\u{0}\t\r\u{1b}\u{7f}\u{fffe}\n\u{85}σ\u{1f600}");
         let expected =
             "&lt;a b=&quot;c&quot; d=&apos;e&apos;&gt;&amp;amp; ]]&gt;\n\u{85}σ\u{1f600}";
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn elements_without_content_are_closed_at_once() {
         let skipped = Trouble {
-            kind: Kind::Skipped,
+            kind: ResultKind::Skipped,
             word: "refused",
             message: "a\"b".to_owned(),
             details: None,

@@ -86,14 +86,14 @@ impl Pen {
 
 /// Field of a table.
 #[derive(Debug, Clone)]
-pub struct Field {
+pub struct LayoutField {
     /// Text.
     pub text: String,
     /// Colour.
     pub paint: Paint,
 }
 
-impl Field {
+impl LayoutField {
     /// Returns a field without colour.
     pub fn plain(text: String) -> Self {
         Self { text, paint: Paint::Plain }
@@ -116,7 +116,7 @@ pub struct Column {
     /// Rank: columns of the highest rank are dropped first; rank 0 stays.
     pub rank: u8,
     /// Fields, one per row.
-    pub fields: Vec<Field>,
+    pub fields: Vec<LayoutField>,
 }
 
 impl Column {
@@ -126,7 +126,7 @@ impl Column {
         (head, right, rank): (&'static str, bool, u8),
         text: impl Fn(&'a T) -> String,
     ) -> Self {
-        let fields = rows.into_iter().map(|row| Field::plain(text(row))).collect();
+        let fields = rows.into_iter().map(|row| LayoutField::plain(text(row))).collect();
         Self { head, right, rank, fields }
     }
 
@@ -138,19 +138,19 @@ impl Column {
     /// Marks unknown fields, if the column has known ones.
     fn fill(&mut self) {
         for field in self.fields.iter_mut().filter(|field| field.text.is_empty()) {
-            *field = Field { text: "–".to_owned(), paint: Paint::Dim };
+            *field = LayoutField { text: "–".to_owned(), paint: Paint::Dim };
         }
     }
 }
 
 /// Table.
 #[derive(Debug, Clone)]
-pub struct Grid {
+pub struct TableLayout {
     /// Columns; the first holds the names.
     pub columns: Vec<Column>,
 }
 
-impl Grid {
+impl TableLayout {
     /// Returns the width of its lines.
     pub fn width(&self) -> usize {
         let gaps = GAP.len() * self.columns.len().saturating_sub(1);
@@ -186,7 +186,7 @@ impl Grid {
     }
 
     /// Adds a column of words at the right.
-    pub fn push(&mut self, head: &'static str, fields: Vec<Field>) {
+    pub fn push(&mut self, head: &'static str, fields: Vec<LayoutField>) {
         self.columns.push(Column { head, right: false, rank: 0, fields });
     }
 
@@ -195,7 +195,7 @@ impl Grid {
         let rows = self.columns.iter().map(|column| column.fields.len()).max().unwrap_or(0);
         let widths: Vec<usize> = self.columns.iter().map(Column::width).collect();
         let mut text = String::new();
-        let mut line = |field: &dyn Fn(&Column) -> Field| {
+        let mut line = |field: &dyn Fn(&Column) -> LayoutField| {
             let mut line = String::new();
             for (i, (column, &wide)) in self.columns.iter().zip(&widths).enumerate() {
                 let field = field(column);
@@ -207,11 +207,11 @@ impl Grid {
             text.push_str(line.trim_end());
             text.push('\n');
         };
-        line(&|column| Field { text: column.head.to_owned(), paint: Paint::Dim });
+        line(&|column| LayoutField { text: column.head.to_owned(), paint: Paint::Dim });
         for row in 0..rows {
             line(&|column| {
                 let field = column.fields.get(row).cloned();
-                field.unwrap_or_else(|| Field::plain(String::new()))
+                field.unwrap_or_else(|| LayoutField::plain(String::new()))
             });
         }
         text
@@ -219,11 +219,11 @@ impl Grid {
 }
 
 /// Returns columns that all stay, in as many tables as needed, one below the other, each with the names.
-pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<Grid> {
+pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<TableLayout> {
     rest.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
     rest.iter_mut().for_each(Column::fill);
     let widest = rest.iter().map(Column::width).max().unwrap_or(0);
-    let mut names = Grid { columns: names };
+    let mut names = TableLayout { columns: names };
     names.fit(width.saturating_sub(widest + GAP.len()));
     let mut blocks = vec![names.clone()];
     for column in rest {
@@ -308,9 +308,9 @@ mod tests {
             head,
             right: true,
             rank,
-            fields: vec![Field::plain(text.to_owned())],
+            fields: vec![LayoutField::plain(text.to_owned())],
         };
-        let mut grid = Grid {
+        let mut grid = TableLayout {
             columns: vec![column("name", 0, "x"), column("b", 2, "12345678"), column("c", 1, "1")],
         };
         assert_eq!(grid.fit(12), ["b"]);

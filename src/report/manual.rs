@@ -6,7 +6,7 @@ use crate::judge::images::judgement::Tile;
 use crate::report::changes::Difference;
 use crate::report::fields::{Table, described, markdown};
 use crate::report::judge::images::MEANINGS;
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 use crate::report::run::{case_csv, checks_csv};
 use crate::report::{advise, bench, render};
@@ -24,22 +24,22 @@ pub fn columns(others: &[(&str, String)]) -> String {
     let mut add = |title: &str, table: &str| {
         let _ = write!(text, "\n## {title}\n\n{table}");
     };
-    add("Rows of a run: `summary.csv`, `CASE.csv`, `--format csv|json`", &of_files::<Line>());
-    add("On consoles and pages only", &markdown(&Line::fields()[Line::FILES..]));
+    add("Rows of a run: `summary.csv`, `CASE.csv`, `--format csv|json`", &of_files::<SummaryRow>());
+    add("On consoles and pages only", &markdown(&SummaryRow::fields()[SummaryRow::FILES..]));
     add("Error bars: `CASE.csv` only", &markdown(&case_csv::deviations()));
     add("Predicted curves of a sweep: `CASE.theory.csv`", &of_files::<case_csv::Predicted>());
-    add("The ray of a case: `CASE.anatomy.csv`", &of_files::<case_csv::Place>());
+    add("The ray of a case: `CASE.anatomy.csv`", &of_files::<case_csv::RayPoint>());
     add("Findings of checks: `checks.csv`", &of_files::<checks_csv::FindingRow>());
     add("Changes since a stored run or bench: `changes.csv`", &of_files::<Difference>());
-    add("Times: `bench.csv`, `bench --format csv|json`", &of_files::<bench::tables::Joined>());
+    add("Times: `bench.csv`, `bench --format csv|json`", &of_files::<bench::tables::BenchEntry>());
     add("Error against time: `CASE.error.csv`", &of_files::<bench::tables::Priced>());
-    add("Advice: `advise.csv`, `advise --format csv|json`", &of_files::<advise::Joined>());
+    add("Advice: `advise.csv`, `advise --format csv|json`", &of_files::<advise::AdviceRow>());
     add(
         "Images of a renderer: `judgement.json`, `judge --images --format json`; `order.lag` is `lag` in the object `order`",
         &described(MEANINGS),
     );
     add("Tiles of images: `tiles.csv` of `judge --images`", &of_files::<&Tile>());
-    add("Images: `gallery.csv` of `render`", &of_files::<render::Joined>());
+    add("Images: `gallery.csv` of `render`", &of_files::<render::PictureImage>());
     for (title, table) in others {
         add(title, table);
     }

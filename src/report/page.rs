@@ -18,7 +18,7 @@ type Word = Vec<(Paint, String)>;
 
 /// Returns the lines of a page without the signs of Markdown. Lines of code keep their length, all others fit.
 pub fn rendered(markdown: &str, pen: Pen) -> String {
-    let mut page = Page { pen, ..Page::default() };
+    let mut page = PageState { pen, ..PageState::default() };
     // Code in brackets is a link of rustdoc; other brackets are an interval, or a condition.
     let mut resolve = |link: BrokenLink| {
         link.reference.starts_with('`').then(|| (CowStr::from(""), CowStr::from("")))
@@ -33,7 +33,7 @@ pub fn rendered(markdown: &str, pen: Pen) -> String {
 
 /// State of reading: open lists, paints and words, and the lines so far.
 #[derive(Default)]
-struct Page {
+struct PageState {
     pen: Pen,
     text: String,
     /// Words of the paragraph, heading, item or cell that is being read.
@@ -50,7 +50,7 @@ struct Page {
     rows: Vec<Vec<Vec<Word>>>,
 }
 
-impl Page {
+impl PageState {
     fn read(&mut self, event: Event) {
         match event {
             Event::Start(tag) => self.open(&tag),

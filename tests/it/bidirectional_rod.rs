@@ -8,7 +8,9 @@ use trueflight::numeric::Known;
 use trueflight::record::Verdict;
 use trueflight::theory::Prediction;
 use trueflight::theory::light::Heuristic;
-use trueflight::theory::rod::bidirectional::{Combination, Connection, Rules, Scene, predict};
+use trueflight::theory::rod::bidirectional::{
+    Combination, Connection, DrawRules, RodScene, predict,
+};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -25,16 +27,16 @@ fn values() -> Vec<Reference> {
 }
 
 /// Returns the rod of the reference values: τ = 2, a = 0.9, `p_f` = 0.75.
-fn scene(sensor: &str, order: usize) -> Scene {
+fn scene(sensor: &str, order: usize) -> RodScene {
     let depth = Known::exact(2.0);
     let is_transmitted = sensor == "T";
-    Scene { depth, albedo: 0.9, forward: 0.75, is_transmitted, orders: order..=order }
+    RodScene { depth, albedo: 0.9, forward: 0.75, is_transmitted, orders: order..=order }
 }
 
-fn predicted(scene: &Scene, combination: Combination, connection: Connection) -> Prediction {
+fn predicted(scene: &RodScene, combination: Combination, connection: Connection) -> Prediction {
     predict(
         scene,
-        &Rules { combination, connection, is_shared: false, has_shares: true },
+        &DrawRules { combination, connection, is_shared: false, has_shares: true },
         None,
         true,
     )
@@ -119,7 +121,7 @@ fn lookups_of_single_techniques_are_those_of_the_references() {
             .expect("the references");
     assert_eq!(references.len(), 72);
     for reference in references {
-        let scene = Scene {
+        let scene = RodScene {
             depth: Known::exact(reference.depth),
             albedo: reference.albedo,
             forward: reference.forward,
@@ -132,7 +134,7 @@ fn lookups_of_single_techniques_are_those_of_the_references() {
             _ => Connection::Exact,
         };
         let combination = Combination::Technique(reference.s);
-        let rules = Rules { combination, connection, is_shared: false, has_shares: true };
+        let rules = DrawRules { combination, connection, is_shared: false, has_shares: true };
         let found = predict(&scene, &rules, Some(share), true).lookups.expect("one ratio");
         let pairs = [
             (found.mean, reference.mean),
@@ -184,7 +186,7 @@ fn shares_add_up_to_the_light_of_their_order() {
         for forward in [0.0, 0.3, 1.0] {
             let orders = 2..=2;
             let depth = Known::exact(1.7);
-            let scene = Scene { depth, albedo: 0.8, forward, is_transmitted, orders };
+            let scene = RodScene { depth, albedo: 0.8, forward, is_transmitted, orders };
             let alone = predicted(&scene, Combination::Technique(0), Connection::Exact);
             let truth = alone.channels[0].truth.value;
             for (combination, connection) in combinations() {

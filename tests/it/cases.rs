@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::common::{judged, none, options, shipped, shipped_plan, shipped_record};
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::case::suite;
 use trueflight::record::Record;
 use trueflight::record::Verdict;
@@ -78,7 +78,7 @@ fn the_built_in_suite_is_a_choice_of_the_case_files() {
 fn a_spec_is_written_as_the_case_that_it_was_read_from() {
     for case in shipped() {
         let text = toml::to_string(&case.spec).expect("TOML");
-        let again = Source { text, ..case.spec.source().clone() };
+        let again = CaseText { text, ..case.spec.source().clone() };
         let again = Case::read(&again).unwrap_or_else(|error| panic!("{}", error.in_full()));
         let tree = |case: &Case| serde_json::to_value(&case.spec).expect("JSON");
         assert_eq!(tree(&again), tree(&case), "{}", case.name);

@@ -5,7 +5,7 @@ use trueflight::media::{Control, Piecewise};
 use trueflight::plan::Plan;
 use trueflight::record::{Row, Verdict, build, curves};
 use trueflight::report::layout::{self, Pen};
-use trueflight::report::run::console::{self, View};
+use trueflight::report::run::console::{self, TableView};
 use trueflight::theory::collisions::rules::Weight;
 use trueflight::theory::ray::curve;
 use trueflight::theory::ray::product::Product;
@@ -239,7 +239,7 @@ fn an_optimum_belongs_to_the_albedo_of_its_row() {
 }
 
 /// Returns a table of theory, this number of columns wide.
-fn table(text: &str, view: View, width: usize) -> String {
+fn table(text: &str, view: TableView, width: usize) -> String {
     let cases = [case("test", text)];
     let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
     let table = console::table(&record, view, Pen { width, colour: false });
@@ -254,7 +254,7 @@ fn all_moments_are_shown_on_a_narrow_screen() {
         ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\n\
         sweep.sampling.values = [1, 2]\nestimators = [{ ratio = {} }, \
         { double.control.explorers.points = 20 }, { single = { rule = \"non-terminating\", albedo = 0.7 } }]";
-    let shown = table(transmittance, View::Moments, 80);
+    let shown = table(transmittance, TableView::Moments, 80);
     for head in ["J₁", "J₂", "J₃", "J₄", "m₂", "m₃", "m₄", "m error", "lookups", "± σ", "n(2)"]
     {
         assert!(shown.contains(head), "{head}:\n{shown}");
@@ -263,7 +263,7 @@ fn all_moments_are_shown_on_a_narrow_screen() {
         albedo = 0.9\nphase.isotropic = {}\nincidence.diffuse = {}\n\
         estimators = [{ non-terminating.sampling.constant.value = 1.25 }, \
         { analog.sampling.local-majorants.segments = 4 }]";
-    let shown = table(slab, View::Moments, 80);
+    let shown = table(slab, TableView::Moments, 80);
     for head in ["m₂", "m₃", "m₄", "m error", "lookups", "± σ", "n(2)"] {
         assert!(shown.contains(head), "{head}:\n{shown}");
     }
@@ -274,14 +274,14 @@ fn values_of_one_sweep_are_printed_apart() {
     let text = "title = \"labels\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\n\
         span = [0, 4]\nsweep.sampling.values = [0.48639, 0.4864, 0.6]\n\
         estimators = [{ ratio = {} }, { woodcock = {} }]";
-    for view in [View::Predict, View::Plan, View::Moments] {
+    for view in [TableView::Predict, TableView::Plan, TableView::Moments] {
         let shown = table(text, view, 100);
         for value in ["0.48639", "0.4864 ", "0.6 "] {
             assert!(shown.contains(value), "{value}:\n{shown}");
         }
     }
     // The reason that both refusals share is listed with both places.
-    let shown = table(text, View::Predict, 100);
+    let shown = table(text, TableView::Predict, 100);
     assert!(shown.contains("(σ\u{302} 0.48639)") && shown.contains("(σ\u{302} 0.4864)"), "{shown}");
     let cases = [case("test", text)];
     let record = build::planned(&Plan::new(&cases, &options(1, 1000)));

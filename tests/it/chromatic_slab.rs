@@ -7,12 +7,12 @@ use trueflight::media::Piecewise;
 use trueflight::phase::Phase;
 use trueflight::phase::isotropic::Isotropic;
 use trueflight::problems::ChromaticSlab;
-use trueflight::problems::slab::{Incidence, Light};
+use trueflight::problems::slab::{Incidence, IncidentLight};
 use trueflight::record::Verdict;
 use trueflight::theory::Mesh;
 use trueflight::theory::colours::Chance;
 use trueflight::theory::colours::rates::Proposal;
-use trueflight::theory::slab::chromatic::Spectrum;
+use trueflight::theory::slab::chromatic::SlabSpectrum;
 
 use crate::common::{case, channels, medium, none, not_passing, predicted, rows};
 use crate::packets::compare;
@@ -143,7 +143,7 @@ fn bounds_are_those_of_the_references_and_above_the_second_moments() {
             format!("medium.constant.extinction = {sigma}\nspan = [0, {}]", reference.length)
         };
         let media: Vec<_> = reference.sigma.iter().map(|sigma| medium(&constant(sigma))).collect();
-        let light = reference.cosine.map_or(Light::Diffuse, Light::Collimated);
+        let light = reference.cosine.map_or(IncidentLight::Diffuse, IncidentLight::Collimated);
         let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
         let majorants = reference.majorant.iter();
         let flown: Vec<_> = majorants.map(|&m| Piecewise::constant(m, media[0].span())).collect();
@@ -153,7 +153,7 @@ fn bounds_are_those_of_the_references_and_above_the_second_moments() {
             vec![incidence; media.len()],
         );
         let meshes: Vec<Mesh> = media.into_iter().map(Mesh::new).collect();
-        let spectrum = Spectrum::new(&problem, meshes.iter().zip(&flown).collect(), false);
+        let spectrum = SlabSpectrum::new(&problem, meshes.iter().zip(&flown).collect(), false);
         for (channel, &bound) in reference.bound.iter().enumerate() {
             let found = spectrum.second_moment_bound(reference.walk(), channel, 1.0);
             let found = found.expect("a bound");

@@ -2,10 +2,10 @@
 
 use trueflight::OfCase;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::check::CheckError;
 use trueflight::gate::CheckId;
-use trueflight::judge::Choice;
+use trueflight::judge::ExperimentChoice;
 use trueflight::rng::Stream;
 use trueflight::stats::verdict::Verdict;
 use trueflight::{Gate, check, check_with, claim};
@@ -176,7 +176,7 @@ fn a_case_of_ones_own_is_as_good() {
         span = [0, 3]
         estimators = [{ ratio = { sampling.constant.value = 1.0 } }]
     "#;
-    let source = Source { name: "mine".into(), path: "mine.toml".into(), text: text.into() };
+    let source = CaseText { name: "mine".into(), path: "mine.toml".into(), text: text.into() };
     let case = Case::read(&source).expect("a case without mistakes");
     let estimator = |rng: &mut Stream| {
         let (mut weight, mut t) = (1.0, 0.0);
@@ -188,7 +188,7 @@ fn a_case_of_ones_own_is_as_good() {
             weight *= if t < 1.0 { 0.0 } else { 0.75 };
         }
     };
-    let choice = Choice { estimator: "ratio", ..Choice::default() };
+    let choice = ExperimentChoice { estimator: "ratio", ..ExperimentChoice::default() };
     check("layers", estimator).of_case(&case, &choice).assert_pass();
 }
 
@@ -206,7 +206,7 @@ fn deep() -> Case {
         span = [0, 400]
         estimators = [{ ratio = { sampling.constant.value = 1.5 } }]
     "#;
-    let source = Source { name: "deep".into(), path: "deep.toml".into(), text: text.into() };
+    let source = CaseText { name: "deep".into(), path: "deep.toml".into(), text: text.into() };
     Case::read(&source).expect("a case without mistakes")
 }
 
@@ -252,7 +252,11 @@ fn what_makes_no_sense_is_told_with_its_cure() {
         (said(pair().truth(0.5).alpha(1.5).verdict()), "alpha = 1.5"),
         (
             said(
-                u().of_case(&deep(), &Choice { estimator: "ratio", ..Choice::default() }).verdict(),
+                u().of_case(
+                    &deep(),
+                    &ExperimentChoice { estimator: "ratio", ..ExperimentChoice::default() },
+                )
+                .verdict(),
             ),
             "multiply the draws by e^τ",
         ),

@@ -15,7 +15,7 @@ use trueflight::theory::Mesh;
 use trueflight::theory::light::Heuristic;
 use trueflight::theory::light::contour::Made;
 use trueflight::theory::single::{
-    Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking,
+    Camera, CameraTracking, Collisions, Mis, NullPaths, RayScene, Tracking,
 };
 
 #[derive(Deserialize)]
@@ -153,7 +153,7 @@ fn shares(case: &str, heuristic: Heuristic) -> [[f64; 2]; 2] {
     let mesh = Mesh::new(problem.medium().clone());
     let sampling = Piecewise::constant(scene(case).1, mesh.support());
     let camera = Camera::new(&mesh, &sampling, &Control::None, CameraTracking::Ratio);
-    let scene = &Scene::new(&problem, camera, Tracking::Exact);
+    let scene = &RayScene::new(&problem, camera, Tracking::Exact);
     let medium = problem.medium();
     let collisions = Collisions { medium, sampling: &sampling, scatters: problem.albedo() };
     let nulls = Some(NullPaths::new(&mesh, &sampling, heuristic));

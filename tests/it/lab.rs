@@ -5,12 +5,12 @@ use lab::self_test::streams::StreamVerdicts;
 use lab::stress::balls::FINER;
 use lab::stress::moments::{Case, products};
 use lab::stress::narrow::trail::{Precision, Traced, Trail};
-use lab::stress::narrow::{Along, Curve, Point};
+use lab::stress::narrow::{Along, CurvePoint, PrecisionCurve};
 use lab::stress::parameters::between;
 use lab::stress::rods::rod_of;
 use lab::stress::shared_walk::of_mean;
 use lab::stress::table::of_stated;
-use lab::stress::{Effort, Measure, Row, Run};
+use lab::stress::{Effort, Measure, Run, TrialRow};
 use proptest::collection::vec;
 use proptest::strategy::Just;
 use trueflight::media::Piecewise;
@@ -18,7 +18,7 @@ use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::numeric::rng::{Address, Random};
 use trueflight::numeric::{DoubleDouble, F32, Known, Lane, ScalarLane};
 use trueflight::theory::space::sphere::ball::Ball;
-use trueflight::theory::space::sphere::shells::{Centre, Resolution};
+use trueflight::theory::space::sphere::shells::{BallResolution, Centre};
 use trueflight::theory::space::sphere::{Lights, Observable, answers};
 use trueflight::theory::{ParticleRule, rod};
 
@@ -51,8 +51,8 @@ fn it_solves_its_equation() {
     }
 }
 
-fn row(measure: Measure, errors: &[f64]) -> Row {
-    let mut row = Row::new("q", "r", measure, 0.0);
+fn row(measure: Measure, errors: &[f64]) -> TrialRow {
+    let mut row = TrialRow::new("q", "r", measure, 0.0);
     errors.iter().zip(0..).for_each(|(&error, trial)| row.see(error, trial, String::new));
     row
 }
@@ -72,9 +72,9 @@ fn wrong_answers_are_counted_and_the_first_is_kept() {
     assert_eq!((all.worst, all.trial), (3.0, 2));
 }
 
-fn run(seed: u64) -> Vec<Row> {
+fn run(seed: u64) -> Vec<TrialRow> {
     let run = Run { effort: Effort::Full, seed };
-    let rows = [Row::relative("q", "r", 0.5), Row::wrong("w", "r")];
+    let rows = [TrialRow::relative("q", "r", 0.5), TrialRow::wrong("w", "r")];
     run.fill(
         [10, 1000],
         rows,
@@ -109,7 +109,7 @@ fn parameters_depend_on_the_seed() {
 fn a_factor_that_overflows_does_not_hide_a_moment() {
     let [extinction, sampling, length] = [5.95e-10, 1.51725e-11, 2e7];
     let case = Case { extinction, control: 0.0, sampling, length, albedo: 0.5 };
-    let rows = Row::moments("products", "r = 39.2");
+    let rows = TrialRow::moments("products", "r = 39.2");
     let run = Run { effort: Effort::Quick, seed: 1 };
     let rows = run.fill([1, 1], rows, || Just(case), products);
     assert!(rows.iter().all(|row| row.holds() && row.skipped == 0), "{rows:#?}");
@@ -152,7 +152,7 @@ fn a_difference_of_two_would_break_the_row() {
         let found = answers(&ball, 0.392_282_540_822_851_2, lights, resolution, &asked);
         found.expect("a medium")[0]
     };
-    let (found, exact) = (of(Resolution::COARSE), DoubleDouble::from(of(FINER).value));
+    let (found, exact) = (of(BallResolution::COARSE), DoubleDouble::from(of(FINER).value));
     assert!(of_stated(found, exact) <= 1.0, "{found:?}");
     let two = Known::new(found.value, 0.01 * found.error);
     assert!(of_stated(two, exact) > 1.0, "{found:?}");
@@ -160,11 +160,11 @@ fn a_difference_of_two_would_break_the_row() {
 
 #[test]
 fn a_bias_counts_only_where_it_is_certain() {
-    let point = Point { x: 1.0, walks: 9.0, bias: -1e-4, error: 1e-5, noise: 5e-5, z: None };
+    let point = CurvePoint { x: 1.0, walks: 9.0, bias: -1e-4, error: 1e-5, noise: 5e-5, z: None };
     assert!(point.exceeds());
-    assert!(!Point { error: 3e-5, ..point }.exceeds());
+    assert!(!CurvePoint { error: 3e-5, ..point }.exceeds());
     let (family, estimator) = ("Rod", "rod, analog");
-    let curve = Curve { family, estimator, along: Along::Steps, points: vec![point] };
+    let curve = PrecisionCurve { family, estimator, along: Along::Steps, points: vec![point] };
     assert_eq!(curve.fails_from(), Some(1.0));
 }
 

@@ -10,7 +10,7 @@ use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::problems::LitSlab;
-use trueflight::problems::lit_slab::Light;
+use trueflight::problems::lit_slab::LightBehind;
 use trueflight::theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use trueflight::theory::slab;
 use trueflight::theory::{Mesh, Prediction};
@@ -40,11 +40,11 @@ enum Shape {
 }
 
 impl Reference {
-    fn light(&self) -> Light {
+    fn light(&self) -> LightBehind {
         match &self.light {
-            Shape::Cap(_, cosine) => Light::Cap(*cosine),
+            Shape::Cap(_, cosine) => LightBehind::Cap(*cosine),
             Shape::Disc(_, distance, radius) => {
-                Light::Disc { distance: *distance, radius: *radius }
+                LightBehind::Disc { distance: *distance, radius: *radius }
             }
         }
     }
@@ -84,7 +84,7 @@ fn references() -> Vec<Reference> {
 fn predict(
     text: &str,
     (albedo, g): (f64, f64),
-    light: Light,
+    light: LightBehind,
     majorant: f64,
     techniques: Techniques,
 ) -> Prediction {
@@ -170,7 +170,7 @@ fn fourth_moments_are_those_of_sums_over_null_collisions() {
         };
         let [one, two, three, four] = [1, 2, 3, 4].map(moment);
         let text = format!("medium.constant.extinction = {sigma}\nspan = [0, {length}]");
-        let found = predict(&text, (albedo, g), Light::Cap(lowest), majorant, techniques);
+        let found = predict(&text, (albedo, g), LightBehind::Cap(lowest), majorant, techniques);
         let channel = &found.channels[0];
         let moments = channel.moments.expect("known");
         let variance = two - one * one;
@@ -188,7 +188,7 @@ fn lookups_of_shadow_rays_add_to_those_of_the_walk() {
     let text = "medium.exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }\nspan = [0, 3]";
     let predicted = |shadow, combination| {
         let techniques = Techniques { shadow, combination };
-        let found = predict(text, (0.7, 0.4), Light::Cap(0.6), 1.9, techniques);
+        let found = predict(text, (0.7, 0.4), LightBehind::Cap(0.6), 1.9, techniques);
         (found.lookups.expect("known").mean, found.shadow_lookups)
     };
     assert_eq!(predicted(None, Combination::Unidirectional).1, None);
@@ -210,9 +210,9 @@ fn lookups_of_shadow_rays_add_to_those_of_the_walk() {
 fn all_combinations_have_one_mean() {
     // Extinction varies, and σ̂ equals its maximum: the means of shadow rays and of hits, weighted, are the truth.
     let text = "medium.exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }\nspan = [0, 3]";
-    let disc = Light::Disc { distance: 0.3, radius: 0.5 };
+    let disc = LightBehind::Disc { distance: 0.3, radius: 0.5 };
     let field = medium(text);
-    for light in [Light::Cap(0.6), disc] {
+    for light in [LightBehind::Cap(0.6), disc] {
         for heuristic in [Heuristic::Balance, Heuristic::Power] {
             for (shadow, densities) in [
                 (Shadow::Delta, Densities::Directional),

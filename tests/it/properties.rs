@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use trueflight::numeric::Span;
 use trueflight::plan::Plan;
-use trueflight::plan::Planned;
+use trueflight::plan::PlannedExperiment;
 use trueflight::record::Verdict;
 use trueflight::record::build;
 
@@ -227,7 +227,7 @@ fn estimators() -> impl Strategy<Value = String> {
 }
 
 /// Asserts a refusal with a message, or a truth in range with finite predictions.
-fn finite_or_refused(planned: &Planned, most: f64) -> Result<(), TestCaseError> {
+fn finite_or_refused(planned: &PlannedExperiment, most: f64) -> Result<(), TestCaseError> {
     let name = planned.id.label();
     let prediction = match &planned.outcome {
         Ok(ready) => &ready.prediction,

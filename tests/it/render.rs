@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::catalogue::own_pages::NONE;
 use trueflight::render::record::{Exposure, PictureRecord};
 use trueflight::render::{self, Picture};
 use trueflight::report::render as report;
 
-fn source(text: &str) -> Source {
-    Source { name: "test".into(), path: PathBuf::from("test.toml"), text: text.into() }
+fn source(text: &str) -> CaseText {
+    CaseText { name: "test".into(), path: PathBuf::from("test.toml"), text: text.into() }
 }
 
 fn picture(text: &str) -> Picture {

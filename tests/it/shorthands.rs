@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use trueflight::case::{Source, Spec};
+use trueflight::case::{CaseText, Spec};
 use trueflight::media::catalogue::OwnPages;
 
 use super::common::{case, case_file, judged, options, predicted, shipped_texts};
@@ -176,7 +176,7 @@ fn listed(text: &str) -> String {
 /// The settings that are read of a case.
 fn settings(text: &str) -> toml::Table {
     let (name, text) = ("test".to_owned(), text.to_owned());
-    let source = Source { name, path: PathBuf::new(), text };
+    let source = CaseText { name, path: PathBuf::new(), text };
     let spec = Spec::parse(&source, &OwnPages::default()).expect("TOML");
     toml::to_string(&spec).expect("TOML").parse().expect("TOML")
 }

@@ -1,15 +1,15 @@
 //! Single precision beside double: doubles find the truth, and single precision fails where it should.
 
-use lab::stress::narrow::scene::Scene;
-use lab::stress::narrow::walks::Entry;
-use lab::stress::narrow::{Along, FAMILIES, Point, compare};
+use lab::stress::narrow::scene::StressScene;
+use lab::stress::narrow::walks::FamilyEntry;
+use lab::stress::narrow::{Along, CurvePoint, FAMILIES, compare};
 
-fn entries() -> impl Iterator<Item = &'static Entry> {
+fn entries() -> impl Iterator<Item = &'static FamilyEntry> {
     FAMILIES.iter().flat_map(|family| family.entries)
 }
 
-fn at(entry: &Entry, [depth, collisions, from]: [f64; 3], budget: f64) -> Point {
-    let scene = Scene { depth, collisions, from };
+fn at(entry: &FamilyEntry, [depth, collisions, from]: [f64; 3], budget: f64) -> CurvePoint {
+    let scene = StressScene { depth, collisions, from };
     compare(entry, &scene, (7, budget)).expect("a setup")
 }
 

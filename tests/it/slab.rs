@@ -9,9 +9,9 @@ use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
-use trueflight::problems::slab::{Incidence, Light};
+use trueflight::problems::slab::{Incidence, IncidentLight};
 use trueflight::theory::ParticleRule;
-use trueflight::theory::slab::{Existence, Piece, Pieces, Resolution, Walk, cached, solve};
+use trueflight::theory::slab::{Existence, Piece, Pieces, Resolution, SlabWalk, cached, solve};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -55,7 +55,8 @@ fn reflectance_and_transmittance_are_those_of_the_references() {
     for reference in references() {
         let Some((phase, tolerance)) = phase(&reference) else { continue };
         let depth = Known::exact(reference.params.tau.expect("an optical depth"));
-        let lights = COSINES.map(Light::Collimated).into_iter().chain([Light::Diffuse]);
+        let lights =
+            COSINES.map(IncidentLight::Collimated).into_iter().chain([IncidentLight::Diffuse]);
         for (i, light) in lights.enumerate() {
             let incidence = Incidence { light, phase };
             let answer = cached(&incidence, depth, reference.params.a).expect("finite");
@@ -94,7 +95,7 @@ fn a_thick_slab_reflects_like_a_semi_infinite_one() {
     // Van de Hulst's e^{−2kτ} is below 1e-16 here.
     for (albedo, depth) in [(0.5, 25.0), (0.9, 40.0)] {
         for cosine in COSINES {
-            let light = Light::Collimated(cosine);
+            let light = IncidentLight::Collimated(cosine);
             let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
             let answer = cached(&incidence, Known::exact(depth), albedo).expect("finite");
             let exact = 1.0 - h_function(albedo, cosine) * f64::sqrt(1.0 - albedo);
@@ -107,7 +108,11 @@ fn a_thick_slab_reflects_like_a_semi_infinite_one() {
 fn all_light_leaves_a_slab_that_absorbs_none() {
     for g in [0.0, 0.5, 0.9, -0.4] {
         let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"));
-        for light in [Light::Diffuse, Light::Collimated(0.05), Light::Collimated(1.0)] {
+        for light in [
+            IncidentLight::Diffuse,
+            IncidentLight::Collimated(0.05),
+            IncidentLight::Collimated(1.0),
+        ] {
             let answer =
                 cached(&Incidence { light, phase }, Known::exact(3.0), 1.0).expect("finite");
             let sum = answer.reflected.value + answer.transmitted.value;
@@ -118,7 +123,7 @@ fn all_light_leaves_a_slab_that_absorbs_none() {
 
 #[test]
 fn sharp_phase_functions_meet_their_error_bound() {
-    for light in [Light::Diffuse, Light::Collimated(0.3)] {
+    for light in [IncidentLight::Diffuse, IncidentLight::Collimated(0.3)] {
         let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(0.9).expect("in range"));
         let answer = cached(&Incidence { light, phase }, Known::exact(4.0), 0.95).expect("finite");
         for known in [answer.reflected, answer.transmitted] {
@@ -176,7 +181,7 @@ fn adding_and_doubling_resolves_second_moments_like_truths_where_it_is_asked_to(
             let (ratio, albedo) = (1.0 / sampling, reference.params.a);
             let odds = rule.probabilities(ratio, albedo);
             let slice = odds.kernel(thickness * sampling, [1.0 - ratio, albedo * ratio], 2);
-            let (light, phase) = (Light::Collimated(cosine), Phase::Isotropic(Isotropic));
+            let (light, phase) = (IncidentLight::Collimated(cosine), Phase::Isotropic(Isotropic));
             let answer = solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];
             for (known, expected) in [answer.reflected, answer.transmitted].iter().zip(expected) {
                 let error = (known.value - expected).abs();
@@ -187,8 +192,8 @@ fn adding_and_doubling_resolves_second_moments_like_truths_where_it_is_asked_to(
 }
 
 /// Returns a walk by the non-terminating rule at a = 0.8 through layers.
-fn through(light: Light, pieces: Vec<Piece>) -> Walk {
-    Walk {
+fn through(light: IncidentLight, pieces: Vec<Piece>) -> SlabWalk {
+    SlabWalk {
         incidence: Incidence { light, phase: Phase::Rayleigh(Rayleigh) },
         albedo: 0.8,
         rule: ParticleRule::NonTerminating,
@@ -201,7 +206,7 @@ fn through(light: Light, pieces: Vec<Piece>) -> Walk {
 
 /// Returns the mean of the lookups. The gate tests it to 1e-5 at best, with 1e9 draws. Its error is stated from ten
 /// directions and eight, and is far above that of sixteen.
-fn lookups(walk: &Walk) -> Known {
+fn lookups(walk: &SlabWalk) -> Known {
     let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
     let law = walk.predict(&truth).lookups.expect("r is constant in each layer");
     assert!(law.error < 1e-5, "{:e}", law.error);
@@ -219,22 +224,22 @@ fn a_walk_without_end_looks_up_the_mean_chord() {
     let layers = [(0.7, 0.3), (0.2, 0.9), (1.1, 0.6)];
     let of = |order: &[usize]| {
         let pieces = order.iter().map(|&i| Piece::of(layers[i].0, layers[i].1)).collect();
-        lookups(&through(Light::Diffuse, pieces))
+        lookups(&through(IncidentLight::Diffuse, pieces))
     };
     let (there, back) = (of(&[0, 1, 2]), of(&[2, 1, 0]));
     let both = there + back;
     assert!(is(both, 2.0 * 2.0 * 2.0) && (both.value - 8.0).abs() < 1e-8, "{both:?}");
     assert!((there.value - back.value).abs() > 1e-3);
-    let alone = lookups(&through(Light::Diffuse, vec![Piece::of(1.7, 0.5)]));
+    let alone = lookups(&through(IncidentLight::Diffuse, vec![Piece::of(1.7, 0.5)]));
     assert!(is(alone, 3.4) && (alone.value - 3.4).abs() < 1e-8, "{alone:?}");
 }
 
 #[test]
 fn the_law_of_the_lookups_is_that_of_a_line_without_scattering() {
     // Black, r = 0.4: each of Poisson(∫σ̂/μ₀) collisions is the last with probability r.
-    let light = Light::Collimated(0.4);
+    let light = IncidentLight::Collimated(0.4);
     let black = through(light, vec![Piece::of(1.2, 0.4)]);
-    let walk = Walk { albedo: 0.0, rule: ParticleRule::Terminating, ..black };
+    let walk = SlabWalk { albedo: 0.0, rule: ParticleRule::Terminating, ..black };
     let truth = cached(&walk.incidence, Known::exact(0.48), 0.0).expect("finite");
     let law = walk.predict(&truth).lookups.expect("r is constant");
     let (collisions, survival) = (3.0_f64, 0.6_f64);
@@ -259,7 +264,7 @@ fn the_law_of_the_lookups_is_that_of_a_line_without_scattering() {
 
 #[test]
 fn layers_of_one_kind_are_one_layer() {
-    let light = Light::Collimated(0.3);
+    let light = IncidentLight::Collimated(0.3);
     let moments = |pieces: Vec<Piece>| {
         let walk = through(light, pieces);
         let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
@@ -297,13 +302,13 @@ fn a_varying_ratio_is_averaged_to_its_error() {
         };
         (0..count).map(layer).collect()
     };
-    let graded = Walk {
+    let graded = SlabWalk {
         rule: ParticleRule::Weighted,
         depth: 0.9,
         pieces: Pieces::Graded([ramp(12), ramp(24)]),
-        ..through(Light::Collimated(0.6), Vec::new())
+        ..through(IncidentLight::Collimated(0.6), Vec::new())
     };
-    let exact = Walk { largest_ratio: 1.0, ..graded.clone() };
+    let exact = SlabWalk { largest_ratio: 1.0, ..graded.clone() };
     let truth = cached(&graded.incidence, Known::exact(0.9), 0.8).expect("finite");
     let (graded, exact) = (graded.predict(&truth), exact.predict(&truth));
     for (graded, exact) in graded.channels.iter().zip(&exact.channels) {
@@ -316,10 +321,10 @@ fn a_varying_ratio_is_averaged_to_its_error() {
 
 #[test]
 fn a_walk_far_below_the_extinction_diverges() {
-    let of = |sampling: f64| Walk {
+    let of = |sampling: f64| SlabWalk {
         largest_ratio: 1.0 / sampling,
         depth: 3.0,
-        ..through(Light::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
+        ..through(IncidentLight::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
     };
     for (sampling, expected) in [
         (1.0, Existence::Finite),
@@ -335,10 +340,10 @@ fn a_walk_far_below_the_extinction_diverges() {
 #[test]
 fn next_to_the_critical_extinction_a_slab_is_not_said_to_diverge() {
     let of = |sampling: f64| {
-        let walk = Walk {
+        let walk = SlabWalk {
             largest_ratio: 1.0 / sampling,
             depth: 3.0,
-            ..through(Light::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
+            ..through(IncidentLight::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
         };
         walk.second_moment()
     };
@@ -371,9 +376,9 @@ fn variances_and_kurtoses_of_lookups_are_those_of_the_references() {
     assert_eq!(references.len(), 21);
     for Lookups { rule, a, layers, cosine, mean, variance, kurtosis } in references {
         let rule = ParticleRule::ALL.into_iter().find(|page| page.name() == rule).expect("a rule");
-        let light = cosine.map_or(Light::Diffuse, Light::Collimated);
+        let light = cosine.map_or(IncidentLight::Diffuse, IncidentLight::Collimated);
         let depth: f64 = layers.iter().map(|[flown, ratio]| flown * ratio).sum();
-        let walk = Walk {
+        let walk = SlabWalk {
             incidence: Incidence { light, phase: Phase::Isotropic(Isotropic) },
             albedo: a,
             rule,

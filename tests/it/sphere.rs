@@ -9,7 +9,7 @@ use crate::common::{case, judged, none, options, predicted, rows};
 use trueflight::plan::Plan;
 use trueflight::record::Verdict;
 use trueflight::theory::space::sphere::ball::Ball;
-use trueflight::theory::space::sphere::shells::{Centre, Resolution};
+use trueflight::theory::space::sphere::shells::{BallResolution, Centre};
 use trueflight::theory::space::sphere::{Lights, Observable, answers};
 
 #[derive(Deserialize)]
@@ -58,12 +58,12 @@ fn compare(light: &str, centre: Centre, lights: Lights, asked: fn(f64) -> Observ
             }
             found
         };
-        let fine = precise(Resolution::FINE, 1e-10);
+        let fine = precise(BallResolution::FINE, 1e-10);
         for (known, exact) in fine.iter().zip(&reference.value) {
             let off = (known.value - exact).abs();
             assert!(off < 3e-12, "{light} {}: off by {off:e}", reference.ball);
         }
-        precise(Resolution::COARSE, 1e-5);
+        precise(BallResolution::COARSE, 1e-5);
     }
 }
 
@@ -226,10 +226,15 @@ fn coarse_answers_are_within_their_errors() {
         let asked =
             [Observable::Mean(0.5), Observable::Mean(0.99), from_afar(0.45), from_afar(0.97)];
         let solve = |resolution| answers(&ball, 0.95, lights, resolution, &asked);
-        let coarse = solve(Resolution::COARSE).expect("a medium");
+        let coarse = solve(BallResolution::COARSE).expect("a medium");
         // No finer than needed: the matrices are dense.
-        let middle =
-            Resolution { nodes: 11, directions: 11, surface: 13, core: 19, ..Resolution::FINE };
+        let middle = BallResolution {
+            nodes: 11,
+            directions: 11,
+            surface: 13,
+            core: 19,
+            ..BallResolution::FINE
+        };
         let fine = solve(middle).expect("a medium");
         for ((coarse, fine), asked) in coarse.iter().zip(&fine).zip(&asked) {
             let off = (coarse.value - fine.value).abs();
@@ -251,8 +256,9 @@ fn every_ray_past_a_lamp_is_answered() {
     let asked: Vec<Observable> =
         offsets.map(|offset| Observable::Radiance { offset, from: f64::NEG_INFINITY }).collect();
     let of = |resolution| answers(&ball, 0.95, lamp, resolution, &asked).expect("a medium");
-    let finer = Resolution { nodes: 9, directions: 9, surface: 11, core: 14, ..Resolution::FINE };
-    let (found, fine) = (of(Resolution::COARSE), of(finer));
+    let finer =
+        BallResolution { nodes: 9, directions: 9, surface: 11, core: 14, ..BallResolution::FINE };
+    let (found, fine) = (of(BallResolution::COARSE), of(finer));
     for ((found, fine), asked) in found.iter().zip(&fine).zip(&asked) {
         // The error is small enough for draws.
         assert!(found.error <= 1e-4 * found.value, "{asked:?}: {found:?}");

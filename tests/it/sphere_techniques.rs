@@ -8,12 +8,12 @@ use crate::common::{case, none, options, predicted, rows, rows_of, source};
 use trueflight::catalogue::Settings;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
-use trueflight::estimators::space::Particle;
+use trueflight::estimators::space::ParticleSettings;
 use trueflight::estimators::sphere::sharing::{SharedTechniques, Subpaths, WalkEvents};
 use trueflight::estimators::sphere::{Correct, Method};
 use trueflight::media::{Body, Majorants};
 use trueflight::numeric::Lane;
-use trueflight::plan::{Plan, Planned};
+use trueflight::plan::{Plan, PlannedExperiment};
 use trueflight::problems::{Problem, Sphere};
 use trueflight::record::{Row, Verdict, build};
 use trueflight::rng::Address;
@@ -102,7 +102,7 @@ static DRAWN: LazyLock<Vec<Known>> = LazyLock::new(|| {
         let plan = Plan::new(&case, &options(1, 100_000));
         let record = build::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
         let rows = rows_of(record);
-        let channel = |planned: &Planned| {
+        let channel = |planned: &PlannedExperiment| {
             let ready = planned.outcome.as_ref().unwrap_or_else(|r| panic!("{r}"));
             ready.prediction.channels[0].clone()
         };
@@ -191,7 +191,7 @@ fn shares_of_techniques_add_up() {
         for subpaths in [Subpaths::Independent, Subpaths::Shared] {
             let techniques = Techniques::Bidirectional(heuristic);
             let sharing = SharedTechniques { techniques, shadow: None, subpaths: Some(subpaths) };
-            let page = Method { particle: Particle::of(ParticleRule::Analog), sharing };
+            let page = Method { particle: ParticleSettings::of(ParticleRule::Analog), sharing };
             for scene in [SCENES[1], SCENES[3]] {
                 let (sphere, majorants) = sphere(scene);
                 let row = &predicted(&text(scene, "{ bidirectional = {} }"))[0];

@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use lab::report::stress as page;
-use lab::stress::{Effort, Measure, PAGES, Row, Run, Stress, narrow};
+use lab::stress::{Effort, Measure, PAGES, Run, Stress, TrialRow, narrow};
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
@@ -70,8 +70,8 @@ fn no_file_depends_on_the_threads() {
 
 #[test]
 fn a_broken_bound_is_told_with_its_place() {
-    let row = Row::new("ln", "1 … 2", Measure::Relative, 1e-16);
-    let row = Row { trials: 1, worst: 3e-16, place: "x = 1.25".into(), ..row };
+    let row = TrialRow::new("ln", "1 … 2", Measure::Relative, 1e-16);
+    let row = TrialRow { trials: 1, worst: 3e-16, place: "x = 1.25".into(), ..row };
     let narrow = narrow::Narrow { curves: Vec::new() };
     let broken = Stress { rows: vec![row], narrow, seconds: 0.0 };
     assert!(!broken.holds());
@@ -81,8 +81,8 @@ fn a_broken_bound_is_told_with_its_place() {
 
 #[test]
 fn what_is_mostly_skipped_is_broken_and_says_where() {
-    let row = Row::new("ln", "1 … 2", Measure::Relative, 1e-16);
-    let row = Row { trials: 1, skipped: 2, first_skipped: "x = 1.5".into(), ..row };
+    let row = TrialRow::new("ln", "1 … 2", Measure::Relative, 1e-16);
+    let row = TrialRow { trials: 1, skipped: 2, first_skipped: "x = 1.5".into(), ..row };
     let narrow = narrow::Narrow { curves: Vec::new() };
     let broken = Stress { rows: vec![row], narrow, seconds: 0.0 };
     let text = page::table(&broken, Pen { width: 100, colour: false });
@@ -95,8 +95,8 @@ fn what_is_mostly_skipped_is_broken_and_says_where() {
 fn rods_and_collision_sums_keep_their_stated_errors_over_thousands_of_parameters() {
     let long = PAGES.entries().filter(|(page, _)| ["rods", "collided"].contains(&page.module));
     let run = Run { effort: Effort::Full, seed: 3 };
-    let rows: Vec<Row> = long.flat_map(|(_, rows)| rows(run)).collect();
-    let broken: Vec<&Row> = rows.iter().filter(|row| !row.holds()).collect();
+    let rows: Vec<TrialRow> = long.flat_map(|(_, rows)| rows(run)).collect();
+    let broken: Vec<&TrialRow> = rows.iter().filter(|row| !row.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
     let solved = rows.iter().find(|row| row.quantity == "rod, two-stream equations");
     assert!(solved.expect("a row").trials > 4000, "{rows:#?}");
@@ -108,7 +108,7 @@ fn weights_that_would_overflow_are_refused() {
     let text = "title = \"t\"\n[problem.transmittance]\nmedium.constant.extinction = 690\n\
                 span = [0, 1]\nsampling.constant.value = 0.69\n\
                 estimators = [{ ratio = {} }, { single.rule = \"clamped\" }, { weighted-delta = {} }]";
-    let source = Source { name: "t".into(), path: "t.toml".into(), text: text.into() };
+    let source = CaseText { name: "t".into(), path: "t.toml".into(), text: text.into() };
     let case = Case::read(&source).expect("read");
     let options = Options { draws: Amount::Exactly(1000), ..Options::default() };
     let plan = Plan::new(std::slice::from_ref(&case), &options);
@@ -122,7 +122,7 @@ fn weights_that_would_overflow_are_refused() {
 #[ignore = "long: the short form again, 30 s of a core"]
 fn another_seed_holds_too() {
     let run = Run { effort: Effort::Quick, seed: 2 };
-    let rows: Vec<Row> = PAGES.values.iter().flat_map(|rows| rows(run)).collect();
-    let broken: Vec<&Row> = rows.iter().filter(|row| !row.holds()).collect();
+    let rows: Vec<TrialRow> = PAGES.values.iter().flat_map(|rows| rows(run)).collect();
+    let broken: Vec<&TrialRow> = rows.iter().filter(|row| !row.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
 }

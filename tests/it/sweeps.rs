@@ -168,7 +168,7 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
     assert_eq!(curves.len(), 9, "three estimators, two channels and the luminance");
     for row in case.rows() {
         let is_own = |curve: &&_| {
-            let curve: &trueflight::record::Curve = curve;
+            let curve: &trueflight::record::PredictedCurve = curve;
             curve.estimator == row.experiment.label && curve.channel == row.channel
         };
         let curve = curves.iter().find(is_own).expect("a line");

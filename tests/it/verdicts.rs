@@ -5,7 +5,7 @@ use trueflight::gate::CheckId;
 use trueflight::record::Record;
 use trueflight::record::{Results, Score, Verdict};
 use trueflight::report::layout::Pen;
-use trueflight::report::run::console::{self, View};
+use trueflight::report::run::console::{self, TableView};
 use trueflight::report::run::summary_csv as joined;
 
 /// Dense layer between thin ones, T = e⁻²·⁸⁵: asymmetric, and not zero at the ends.
@@ -197,7 +197,7 @@ fn a_z_whose_law_is_not_near_normal_is_marked() {
     };
     let (record, found): (_, Vec<_>) = marks(400_000);
     assert_eq!(found, [vec![Score::Variance], vec![]]);
-    let shown = console::table(&record, View::Run, Pen { width: 200, colour: false });
+    let shown = console::table(&record, TableView::Run, Pen { width: 200, colour: false });
     let lines: Vec<&str> = shown.lines().filter(|line| line.starts_with("ratio")).collect();
     assert!(lines[0].matches('(').count() == 1 && !lines[1].contains('('), "{shown}");
     assert_eq!(shown.lines().filter(|line| line.starts_with("(z)")).count(), 1, "{shown}");
@@ -210,6 +210,6 @@ fn a_z_whose_law_is_not_near_normal_is_marked() {
     assert_eq!(found[0], [Score::Mean, Score::Variance, Score::Lookups]);
     let (record, _): (_, Vec<Vec<Score>>) = marks(400_000);
     let record = Record { results: Results { cases: vec![], ..record.results }, ..record };
-    let shown = console::table(&record, View::Run, Pen { width: 200, colour: false });
+    let shown = console::table(&record, TableView::Run, Pen { width: 200, colour: false });
     assert!(!shown.contains("(z)"), "{shown}");
 }

@@ -5,7 +5,7 @@
 use crate::common::{case, none, rows_of};
 use trueflight::case::Case;
 use trueflight::draw::run;
-use trueflight::plan::{Amount, Options, Plan, Planned};
+use trueflight::plan::{Amount, Options, Plan, PlannedExperiment};
 use trueflight::record::{Row, Verdict, build, evaluate};
 use trueflight::stats::ties;
 
@@ -168,7 +168,7 @@ const ALL: &str = "{ woodcock = {} }, { ratio = {} }, { residual-ratio = {} }, \
     { closed-form = {} }, { regular = {} }";
 
 /// Returns the fault of the prediction of an experiment: neither finite nor a refusal with a message.
-fn trouble(planned: &Planned) -> Option<String> {
+fn trouble(planned: &PlannedExperiment) -> Option<String> {
     let name = planned.id.label();
     let prediction = match &planned.outcome {
         Err(refusal) => {

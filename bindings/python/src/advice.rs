@@ -1,7 +1,7 @@
 //! Advice, as columns in JSON: those of `advise.csv`.
 
 use pyo3::prelude::*;
-use trueflight::advise::{Costs, Request, advise as advised, options};
+use trueflight::advise::{AdviceRequest, Costs, advise as advised, options};
 use trueflight::report::advise::columns;
 
 use crate::background::work;
@@ -23,7 +23,7 @@ struct Sought {
 }
 
 impl Sought {
-    fn request(&self) -> Result<Request, Failure> {
+    fn request(&self) -> Result<AdviceRequest, Failure> {
         let Self { calibrate, rays, seed, .. } = *self;
         let named = |name: &'static str| move |takes| Failure::Wrong(format!("{name}: {takes}"));
         let error = options::error(&self.error).map_err(named("error"))?;
@@ -32,7 +32,7 @@ impl Sought {
         let costs = costs.unwrap_or_else(|| Costs::of_this_machine(calibrate));
         let (target, costs) = options::goal(error, budget.map_err(named("budget"))?, costs);
         let looseness = options::looseness(&self.majorant).map_err(named("majorant"))?;
-        Ok(Request { target, costs, rays, seed, looseness, curves: false })
+        Ok(AdviceRequest { target, costs, rays, seed, looseness, curves: false })
     }
 }
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use pyo3::prelude::*;
 use trueflight::case::Case;
+use trueflight::case::CaseText;
 use trueflight::case::Catalogue;
-use trueflight::case::Source;
 use trueflight::case::Spec;
 use trueflight::case::suite;
 use trueflight::case::sweep::SweptQuantity;
@@ -62,17 +62,17 @@ impl CaseRequest {
         Ok(Spec::parse(&self.source()?, &own_pages::NONE)?)
     }
 
-    fn source(&self) -> Result<Source, Failure> {
+    fn source(&self) -> Result<CaseText, Failure> {
         let text = match self.kind.as_str() {
             "named" => {
                 let built_in = suite::find(&self.text).filter(|_| !Path::new(&self.text).exists());
-                let from_file = || Source::read(Path::new(&self.text));
+                let from_file = || CaseText::read(Path::new(&self.text));
                 return Ok(built_in.map_or_else(from_file, Ok)?);
             }
             "json" => from_json(&self.text)?,
             _ => self.text.clone(),
         };
-        Ok(Source { name: "case".into(), path: "case.toml".into(), text })
+        Ok(CaseText { name: "case".into(), path: "case.toml".into(), text })
     }
 }
 

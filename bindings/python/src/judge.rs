@@ -7,7 +7,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use trueflight::OfCase;
 use trueflight::check::{Check, CheckError, Property, Pushed};
-use trueflight::judge::{BUFFER, Choice};
+use trueflight::judge::{BUFFER, ExperimentChoice};
 
 use crate::background::work;
 use crate::cases;
@@ -51,7 +51,7 @@ impl ClaimRequest {
     ) -> Result<Check<()>, Failure> {
         let case = case.read_one()?;
         let (estimator, swept, nearest) = (self.estimator.as_str(), self.sampling, self.nearest);
-        let choice = Choice { estimator, swept, nearest, seed: self.seed, channel: None };
+        let choice = ExperimentChoice { estimator, swept, nearest, seed: self.seed, channel: None };
         Ok(check.of_case(&case, &choice))
     }
 

@@ -1,7 +1,7 @@
 //! Bounds that every draw must keep.
 
 use super::batch::Batch;
-use super::check::{Check, Context, Found, Observer, Place, Total};
+use super::check::{BufferPlace, Check, CheckResult, Context, Observer, Total};
 use estimators::DrawBuffer;
 use gate::session::Reason;
 use gate::stats::verdict::Verdict;
@@ -46,11 +46,11 @@ impl Check for Always {
         largest.is_nan() || largest > self.bound
     }
 
-    fn finish(&self, total: &Total, context: &Context) -> Found {
+    fn finish(&self, total: &Total, context: &Context) -> CheckResult {
         let (largest, block) = total.largest;
         let (verdict, reason) = self.verdict(largest, context);
         let block = (verdict == Verdict::Fail).then_some(block);
-        Found { block, ..Found::new(verdict, reason) }
+        CheckResult { block, ..CheckResult::new(verdict, reason) }
     }
 }
 
@@ -89,7 +89,7 @@ struct Largest<'a> {
 }
 
 impl Observer for Largest<'_> {
-    fn absorb(&mut self, draws: &Batch, _: Place, _: &mut Vec<f64>) {
+    fn absorb(&mut self, draws: &Batch, _: BufferPlace, _: &mut Vec<f64>) {
         self.largest = larger(self.largest, (self.always.largest)(draws.draws));
     }
 

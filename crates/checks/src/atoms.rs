@@ -20,14 +20,14 @@ const SAME: f64 = 1e-9;
 const ROUNDING: f64 = 1e-15;
 
 /// Values in ascending order with their probabilities.
-struct Values {
+struct AtomValues {
     value: Vec<f64>,
     probability: Vec<f64>,
     /// Largest relative distance at which a draw still counts as the value.
     same: f64,
 }
 
-impl Values {
+impl AtomValues {
     fn of(mut atoms: Vec<(f64, f64)>, same: f64) -> Self {
         atoms.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (value, probability) = atoms.into_iter().unzip();
@@ -61,7 +61,7 @@ impl Values {
     }
 }
 
-impl DistributionTest for Values {
+impl DistributionTest for AtomValues {
     fn size(&self) -> usize {
         self.value.len() + 1
     }
@@ -106,7 +106,7 @@ fn atoms(prediction: &Prediction) -> Option<Vec<(f64, f64)>> {
 fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
     let Some(atoms) = draws.in_full().and_then(atoms) else { return Vec::new() };
     let same = draws.error_of_product().max(SAME);
-    let (what, values) = ("the distribution of the values", Values::of(atoms, same));
+    let (what, values) = ("the distribution of the values", AtomValues::of(atoms, same));
     if values.is_blurred() {
         let why = format!("values of a draw are closer to each other than {same:.1e}, relative");
         return vec![ForeignTest { what: what.into(), test: Err(why), between: ANY }];
@@ -122,7 +122,7 @@ pub const CHECK: CheckKind =
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
     let Some(atoms) = atoms(subject.prediction) else { return Vec::new() };
-    let values = Values::of(atoms, SAME);
+    let values = AtomValues::of(atoms, SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
     Question::distribution(
         CheckId::Atoms,
@@ -137,14 +137,14 @@ mod tests {
 
     #[test]
     fn a_rounded_zero_is_zero_and_a_strange_value_is_none() {
-        let values = Values::of(vec![(1.0, 0.4), (0.0, 0.6)], SAME);
+        let values = AtomValues::of(vec![(1.0, 0.4), (0.0, 0.6)], SAME);
         assert_eq!(
             [values.find(0.0), values.find(-1.1e-16), values.find(1.0)],
             [Some(0), Some(0), Some(1)]
         );
         assert_eq!([values.find(1e-9), values.find(0.5), values.find(1.1)], [None; 3]);
         // Powers of a small ratio are separated, however small they are.
-        let powers = Values::of((0..20).map(|n| (0.01f64.powi(n), 0.05)).collect(), SAME);
+        let powers = AtomValues::of((0..20).map(|n| (0.01f64.powi(n), 0.05)).collect(), SAME);
         assert_eq!(powers.find(0.01f64.powi(3) * (1.0 + 1e-12)), Some(16));
         assert_eq!(powers.find(0.5 * 0.01f64.powi(3)), None);
     }

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::Batch;
 use super::distribution::{DistributionTest, Inspected};
-use super::scalar::Scalar;
+use super::scalar::ScalarCheck;
 use crate::Tolerance;
 use gate::deviation::Deviation;
 use gate::session::{Levels, Reason, Trail};
@@ -135,7 +135,7 @@ pub struct Look {
 
 /// Place of a buffer of draws in its block.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub struct BufferPlace {
     /// Number of its first draw in the block.
     pub first: usize,
     /// True if p-values see its draws.
@@ -164,7 +164,7 @@ pub struct Context<'a> {
 
 /// Result of a check.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Found {
+pub struct CheckResult {
     /// p-value, which is judged together with all p-values of the run.
     pub p: Option<f64>,
     /// Numbers of the gate.
@@ -182,7 +182,7 @@ pub struct Found {
     pub reason: Option<Reason>,
 }
 
-impl Found {
+impl CheckResult {
     /// Returns a finding with a verdict and a reason alone.
     pub fn new(verdict: Verdict, reason: Option<Reason>) -> Self {
         Self { verdict, reason, p: None, gate: None, path: Vec::new(), block: None }
@@ -191,7 +191,7 @@ impl Found {
 
 /// Part of the error rate that a check uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Share {
+pub enum ErrorShare {
     /// Four fifths, by e-Bonferroni.
     Gate,
     /// One fifth, by Holm.
@@ -203,8 +203,8 @@ pub enum Share {
 /// Way to check draws.
 pub trait Check: Send + Sync {
     /// Returns the part of the error rate that it uses.
-    fn share(&self) -> Share {
-        Share::Nothing
+    fn share(&self) -> ErrorShare {
+        ErrorShare::Nothing
     }
 
     /// Returns the total before the first block.
@@ -241,7 +241,7 @@ pub trait Check: Send + Sync {
     }
 
     /// Returns the finding.
-    fn finish(&self, total: &Total, context: &Context) -> Found;
+    fn finish(&self, total: &Total, context: &Context) -> CheckResult;
 
     /// Returns the reason why the plan allows no pass, and the number of draws that would; `None` if it allows one.
     fn too_weak(&self, what: &str) -> Option<(Reason, f64)> {
@@ -250,7 +250,7 @@ pub trait Check: Send + Sync {
     }
 
     /// Returns the quantity for the gate, if the check has one.
-    fn scalar(&self) -> Option<&Scalar> {
+    fn scalar(&self) -> Option<&ScalarCheck> {
         None
     }
 
@@ -263,7 +263,7 @@ pub trait Check: Send + Sync {
 /// Observer of a block: absorbs its draws, and returns its numbers.
 pub trait Observer {
     /// Adds a buffer of draws; `y` is scratch space for the observed values.
-    fn absorb(&mut self, draws: &Batch, place: Place, y: &mut Vec<f64>);
+    fn absorb(&mut self, draws: &Batch, place: BufferPlace, y: &mut Vec<f64>);
 
     /// Returns the numbers of the block, of which p-values see the first `fixed` draws.
     fn close(self: Box<Self>, fixed: usize) -> Vec<f64>;
@@ -273,7 +273,7 @@ pub trait Observer {
 struct Blind;
 
 impl Observer for Blind {
-    fn absorb(&mut self, _: &Batch, _: Place, _: &mut Vec<f64>) {}
+    fn absorb(&mut self, _: &Batch, _: BufferPlace, _: &mut Vec<f64>) {}
 
     fn close(self: Box<Self>, _: usize) -> Vec<f64> {
         Vec::new()
@@ -284,9 +284,9 @@ impl Observer for Blind {
 pub struct Untestable(pub String);
 
 impl Check for Untestable {
-    fn finish(&self, _: &Total, context: &Context) -> Found {
+    fn finish(&self, _: &Total, context: &Context) -> CheckResult {
         let reason = self.too_weak(context.what).map(|(reason, _)| reason);
-        Found::new(context.too_weak, reason)
+        CheckResult::new(context.too_weak, reason)
     }
 
     fn too_weak(&self, what: &str) -> Option<(Reason, f64)> {

@@ -15,7 +15,7 @@ use super::check::{Check, Question, Subject, Untestable};
 use super::distribution::DistributionTest;
 use super::foreign::{ANY, ForeignDraws, ForeignTest};
 use super::mean::is_faint;
-use super::scalar::{Scalar, variance};
+use super::scalar::{ScalarCheck, variance};
 use crate::{CheckKind, Tolerance};
 use estimators::DrawBuffer;
 use gate::session::Quantity;
@@ -32,7 +32,7 @@ const FOREIGN: u64 = 1 << 18;
 
 /// Covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed
 /// beforehand. `P(E ≥ 1/p) ≤ p` by Markov's inequality.
-struct ByGate(AssertUnwindSafe<Scalar>);
+struct ByGate(AssertUnwindSafe<ScalarCheck>);
 
 impl DistributionTest for ByGate {
     fn size(&self) -> usize {
@@ -67,7 +67,7 @@ fn of_foreign(foreign: &ForeignDraws) -> Vec<ForeignTest> {
         pilots: None,
     };
     let asked = scalars(&subject).filter(|asked| asked.channel < request.values);
-    let tests = asked.filter_map(|Asked { channel, what, scalar }| {
+    let tests = asked.filter_map(|CovarianceRequest { channel, what, scalar }| {
         let what = format!("{what} of {}", prediction.channels[channel].name).into();
         let test = Ok(Box::new(ByGate(AssertUnwindSafe(scalar?))) as Box<dyn DistributionTest>);
         Some(ForeignTest { what, test, between: ANY })
@@ -80,7 +80,7 @@ pub const CHECK: CheckKind = CheckKind::new(CheckId::Covariance, questions).of_f
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
-    let questions = scalars(subject).map(|Asked { channel, what, scalar }| {
+    let questions = scalars(subject).map(|CovarianceRequest { channel, what, scalar }| {
         let answer: Box<dyn Check> = match scalar {
             Some(scalar) => Box::new(scalar),
             None => Box::new(Untestable("its variance overflows".into())),
@@ -91,20 +91,20 @@ fn questions(subject: &Subject) -> Vec<Question> {
 }
 
 /// Covariance of a channel with the one before it; no scalar if its variance overflows.
-struct Asked {
+struct CovarianceRequest {
     channel: usize,
     what: String,
-    scalar: Option<Scalar>,
+    scalar: Option<ScalarCheck>,
 }
 
-fn scalars<'a>(subject: &'a Subject) -> impl Iterator<Item = Asked> + 'a {
+fn scalars<'a>(subject: &'a Subject) -> impl Iterator<Item = CovarianceRequest> + 'a {
     let covariances = subject.prediction.covariances.iter();
     covariances
         .filter(|covariance| covariance.pair[0] + 1 == covariance.pair[1])
         .filter_map(|covariance| ask(subject, covariance))
 }
 
-fn ask(subject: &Subject, covariance: &Predicted) -> Option<Asked> {
+fn ask(subject: &Subject, covariance: &Predicted) -> Option<CovarianceRequest> {
     let [first, second] = covariance.pair.map(|i| &subject.prediction.channels[i]);
     if is_faint(subject, first) || is_faint(subject, second) {
         return None;
@@ -129,7 +129,7 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Asked> {
                 }));
             };
         let observe = Observe::Draw(Box::new(observe));
-        Scalar::new(subject, quantity.of(covariance.value, 1.0 / unit), observe)
+        ScalarCheck::new(subject, quantity.of(covariance.value, 1.0 / unit), observe)
     });
-    Some(Asked { channel: covariance.pair[1], what, scalar })
+    Some(CovarianceRequest { channel: covariance.pair[1], what, scalar })
 }

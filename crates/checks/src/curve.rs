@@ -15,7 +15,7 @@ use super::batch::{Batch, Observe};
 use super::check::{Question, Subject, rounding, rounding_of};
 use super::distribution::DistributionTest;
 use super::foreign::{ForeignDraws, ForeignTest};
-use super::scalar::{Scalar, variance};
+use super::scalar::{ScalarCheck, variance};
 use crate::CheckKind;
 use estimators::DrawBuffer;
 use gate::CheckId;
@@ -151,7 +151,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
 /// Name of an increment in sentences.
 const STEP: &str = "the step to it";
 
-fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Scalar {
+fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> ScalarCheck {
     let (here, before) = (scale[j], j.checked_sub(1).map(|i| (i, scale[i])));
     let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
         y.extend((0..draws.lookups.len()).map(|draw| {
@@ -163,5 +163,5 @@ fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Sc
     let ground = variance(increment.variance, increment.error);
     let step = Quantity::new(CheckId::Curve, STEP, ground, rounding_of(subject), MEAN_CAP);
     let step = step.within(subject.tolerance.mean);
-    Scalar::new(subject, step, Observe::Draw(Box::new(observe)))
+    ScalarCheck::new(subject, step, Observe::Draw(Box::new(observe)))
 }

@@ -4,7 +4,7 @@
 use std::panic::{RefUnwindSafe, UnwindSafe};
 
 use super::batch::Batch;
-use super::check::{Check, Context, Found, Observer, Place, Share, Total};
+use super::check::{BufferPlace, Check, CheckResult, Context, ErrorShare, Observer, Total};
 use estimators::{DrawBuffer, Experiment};
 use gate::session::Reason;
 use gate::stats::verdict::Verdict;
@@ -35,8 +35,8 @@ pub trait DistributionTest: Send + Sync + UnwindSafe + RefUnwindSafe {
 }
 
 impl<L: DistributionTest> Check for L {
-    fn share(&self) -> Share {
-        Share::PValues
+    fn share(&self) -> ErrorShare {
+        ErrorShare::PValues
     }
 
     fn total(&self) -> Total {
@@ -44,32 +44,32 @@ impl<L: DistributionTest> Check for L {
     }
 
     fn observe(&self) -> Box<dyn Observer + '_> {
-        Box::new(Sums { of: self, sums: vec![0.0; self.size()] })
+        Box::new(DistributionSums { of: self, sums: vec![0.0; self.size()] })
     }
 
-    fn finish(&self, total: &Total, context: &Context) -> Found {
+    fn finish(&self, total: &Total, context: &Context) -> CheckResult {
         let (draws, fixed, what) = (context.look.draws, context.fixed, context.what.to_owned());
         if draws < fixed {
             let reason = Reason::Cut { what: what.into(), draws, fixed };
-            return Found::new(Verdict::Inconclusive, Some(reason));
+            return CheckResult::new(Verdict::Inconclusive, Some(reason));
         }
         let sums: Vec<f64> = total.sums.iter().map(Sum::value).collect();
         match self.p_value(&sums, fixed as f64) {
             // All p-values of a run are judged together.
-            Some(p) => Found { p: Some(p), ..Found::new(Verdict::Pass, None) },
-            None => Found::new(Verdict::Underpowered, Some(Reason::TooFew(what.into()))),
+            Some(p) => CheckResult { p: Some(p), ..CheckResult::new(Verdict::Pass, None) },
+            None => CheckResult::new(Verdict::Underpowered, Some(Reason::TooFew(what.into()))),
         }
     }
 }
 
 /// Sums of a block.
-struct Sums<'a, L: DistributionTest> {
+struct DistributionSums<'a, L: DistributionTest> {
     of: &'a L,
     sums: Vec<f64>,
 }
 
-impl<L: DistributionTest> Observer for Sums<'_, L> {
-    fn absorb(&mut self, draws: &Batch, place: Place, _: &mut Vec<f64>) {
+impl<L: DistributionTest> Observer for DistributionSums<'_, L> {
+    fn absorb(&mut self, draws: &Batch, place: BufferPlace, _: &mut Vec<f64>) {
         if place.is_fixed {
             self.of.add(draws, place.first, &mut self.sums);
         }
@@ -115,13 +115,13 @@ impl Inspected<'_> {
 pub struct Inspection<F>(pub F);
 
 impl<F: Fn(&Inspected) -> f64 + Send + Sync> Check for Inspection<F> {
-    fn share(&self) -> Share {
-        Share::PValues
+    fn share(&self) -> ErrorShare {
+        ErrorShare::PValues
     }
 
-    fn finish(&self, _: &Total, context: &Context) -> Found {
+    fn finish(&self, _: &Total, context: &Context) -> CheckResult {
         let p = Some((self.0)(context.inspected));
         // All p-values of a run are judged together.
-        Found { p, ..Found::new(Verdict::Pass, None) }
+        CheckResult { p, ..CheckResult::new(Verdict::Pass, None) }
     }
 }

@@ -39,7 +39,7 @@ pub use batch::Observe;
 pub use check::{Check, Pilot, Question, Subject, rounding};
 pub use distribution::{DistributionTest, Inspected};
 pub use foreign::{ForeignDraws, ForeignTest};
-pub use scalar::Scalar;
+pub use scalar::ScalarCheck;
 
 /// Smallest relative differences that must be detected; `None` where the case does not give them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

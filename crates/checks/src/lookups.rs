@@ -10,7 +10,7 @@
 use super::always::Always;
 use super::batch::Observe;
 use super::check::{Question, Subject};
-use super::scalar::{Scalar, variance};
+use super::scalar::{ScalarCheck, variance};
 use crate::CheckKind;
 use estimators::DrawBuffer;
 use gate::CheckId;
@@ -38,7 +38,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
         Question::whole(
             CheckId::Lookups,
             what,
-            Scalar::new(subject, lookups.of(mean, mean), observe),
+            ScalarCheck::new(subject, lookups.of(mean, mean), observe),
         )
     } else {
         let largest = move |draws: &DrawBuffer| {

@@ -16,7 +16,7 @@
 use super::always::Always;
 use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};
-use super::scalar::{Scalar, variance};
+use super::scalar::{ScalarCheck, variance};
 use crate::CheckKind;
 use estimators::DrawBuffer;
 use gate::CheckId;
@@ -108,5 +108,5 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> 
         move |x| (x - truth) * scale,
     );
     let mean = Quantity::mean(variance(known, error), floor).within(subject.tolerance.mean);
-    Box::new(Scalar::new(subject, mean.of(truth, channel.unit), observe))
+    Box::new(ScalarCheck::new(subject, mean.of(truth, channel.unit), observe))
 }

@@ -1,22 +1,24 @@
 //! Quantities of a draw that go through the gate: a mean of 0 with a known variance.
 
 use super::batch::{Batch, Observe};
-use super::check::{Check, Context, Found, Look, Observer, Place, Share, Subject, Total};
+use super::check::{
+    BufferPlace, Check, CheckResult, Context, ErrorShare, Look, Observer, Subject, Total,
+};
 use gate::CheckId;
 use gate::deviation::signed_percent;
-use gate::session::{BlockSums, Planned, Quantity, Reason, Trail, VarianceBound};
+use gate::session::{BlockSums, PlannedQuantity, Quantity, Reason, Trail, VarianceBound};
 use gate::stats::gate::Decision;
 use gate::stats::verdict::BLOCK;
 use numeric::digits::short;
 
 /// Quantity y of each draw that has mean 0 and a known variance if the draws are correct.
-pub struct Scalar {
+pub struct ScalarCheck {
     /// y.
     pub observe: Observe,
     /// Number added to every y: 0, except where a bias is added on purpose.
     pub bias: f64,
     /// Quantity and its tolerance.
-    pub planned: Planned,
+    pub planned: PlannedQuantity,
 }
 
 /// Returns the ground for an upper bound of a variance: the variance and its relative error bound.
@@ -24,7 +26,7 @@ pub fn variance(variance: f64, error: f64) -> Option<VarianceBound> {
     Some(VarianceBound::Variance(variance * (1.0 + error)))
 }
 
-impl Scalar {
+impl ScalarCheck {
     /// Plans a quantity: ε from the case, or from the planned draws.
     pub fn new(subject: &Subject, quantity: Quantity, observe: Observe) -> Self {
         Self { observe, bias: 0.0, planned: quantity.planned(subject.draws as f64) }
@@ -47,9 +49,9 @@ impl Scalar {
     }
 }
 
-impl Check for Scalar {
-    fn share(&self) -> Share {
-        Share::Gate
+impl Check for ScalarCheck {
+    fn share(&self) -> ErrorShare {
+        ErrorShare::Gate
     }
 
     fn total(&self) -> Total {
@@ -75,7 +77,7 @@ impl Check for Scalar {
         total.trail.as_ref().is_some_and(|trail| trail.decision == Decision::Failed)
     }
 
-    fn finish(&self, total: &Total, context: &Context) -> Found {
+    fn finish(&self, total: &Total, context: &Context) -> CheckResult {
         // Without a look there is no evidence.
         let (trail, levels) = (total.trail.clone().unwrap_or_default(), context.look.levels);
         let (verdict, reason) = if context.expects_bias {
@@ -85,11 +87,11 @@ impl Check for Scalar {
             let remark = || self.remark(&trail, context.log_unit);
             self.planned.verdict(&trail, levels, context.too_weak, remark)
         };
-        Found {
+        CheckResult {
             gate: Some(self.planned.finding(&trail, levels)),
             block: Some(trail.draws.saturating_sub(1) / BLOCK),
             path: trail.path.iter().map(|&(draws, ln_e)| [draws as f64, ln_e]).collect(),
-            ..Found::new(verdict, reason)
+            ..CheckResult::new(verdict, reason)
         }
     }
 
@@ -97,7 +99,7 @@ impl Check for Scalar {
         self.planned.too_short().zip(self.planned.underpowered)
     }
 
-    fn scalar(&self) -> Option<&Scalar> {
+    fn scalar(&self) -> Option<&ScalarCheck> {
         Some(self)
     }
 
@@ -108,12 +110,12 @@ impl Check for Scalar {
 
 /// Sums of a block.
 struct Sums<'a> {
-    scalar: &'a Scalar,
+    scalar: &'a ScalarCheck,
     sums: BlockSums,
 }
 
 impl Observer for Sums<'_> {
-    fn absorb(&mut self, draws: &Batch, _: Place, y: &mut Vec<f64>) {
+    fn absorb(&mut self, draws: &Batch, _: BufferPlace, y: &mut Vec<f64>) {
         let Self { scalar, sums } = self;
         draws.observe(&scalar.observe, y, |y, times| {
             if scalar.bias != 0.0 {

@@ -12,7 +12,7 @@
 use super::batch::Observe;
 use super::check::{Check, Question, Subject, Untestable, rounding_of};
 use super::mean::is_faint;
-use super::scalar::Scalar;
+use super::scalar::ScalarCheck;
 use crate::CheckKind;
 use gate::CheckId;
 use gate::session::quantity::{variance_floor, variance_of_squares};
@@ -68,5 +68,5 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Option<Box<dyn 
         },
     );
     let quantity = Quantity::variance(Some(of_squares), floor).within(subject.tolerance.variance);
-    Some(Box::new(Scalar::new(subject, quantity.of(variance, variance), observe)))
+    Some(Box::new(ScalarCheck::new(subject, quantity.of(variance, variance), observe)))
 }

@@ -7,7 +7,7 @@ use crate::CheckId;
 
 /// The side on which a quantity deviates.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Side {
+pub enum DeviationSide {
     /// No deviation was found.
     #[default]
     Right,
@@ -19,7 +19,7 @@ pub enum Side {
     Both,
 }
 
-impl Side {
+impl DeviationSide {
     /// Returns whether the quantity deviates.
     pub fn is_off(self) -> bool {
         self != Self::Right
@@ -47,7 +47,7 @@ impl Side {
 
 /// Part of a sweep in which an estimator fails.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Place {
+pub enum SweepPart {
     /// Anywhere in the sweep, or nothing was swept.
     #[default]
     Anywhere,
@@ -57,7 +57,7 @@ pub enum Place {
     HighEnd,
 }
 
-impl Place {
+impl SweepPart {
     /// Likely cause of a failure in this part, for any check that fails.
     pub fn hint(self) -> Option<&'static str> {
         match self {
@@ -103,11 +103,11 @@ pub enum Symptom {
 #[allow(clippy::struct_excessive_bools)] // one for each check that has no side
 pub struct Pattern {
     /// The mean.
-    pub mean: Side,
+    pub mean: DeviationSide,
     /// The variance.
-    pub variance: Side,
+    pub variance: DeviationSide,
     /// The number of lookups: its mean, or its distribution.
-    pub lookups: Side,
+    pub lookups: DeviationSide,
     /// A covariance, or the curve along one walk.
     pub curve: bool,
     /// The distribution of free flights or of the values.
@@ -123,7 +123,7 @@ pub struct Pattern {
     /// All draws are 0 or 1, which says nothing about weights; false where that is not known.
     pub binary: bool,
     /// Part of the sweep.
-    pub place: Place,
+    pub place: SweepPart,
 }
 
 impl Pattern {
@@ -134,8 +134,8 @@ impl Pattern {
             Symptom::Variance => self.variance.note(off),
             Symptom::Lookups => self.lookups.note(off),
             Symptom::LookupDistribution => {
-                if self.lookups == Side::Right {
-                    self.lookups = Side::Both;
+                if self.lookups == DeviationSide::Right {
+                    self.lookups = DeviationSide::Both;
                 }
             }
             Symptom::Correlation => self.curve = true,
@@ -149,11 +149,11 @@ impl Pattern {
 
     /// The pattern in words: `the mean is high, the variance low`.
     pub fn words(&self) -> String {
-        let side = |side: Side| match side {
-            Side::Right => "right",
-            Side::Low => "low",
-            Side::High => "high",
-            Side::Both => "off",
+        let side = |side: DeviationSide| match side {
+            DeviationSide::Right => "right",
+            DeviationSide::Low => "low",
+            DeviationSide::High => "high",
+            DeviationSide::Both => "off",
         };
         let sides = [
             ("the mean", self.mean),
@@ -176,9 +176,9 @@ impl Pattern {
         ];
         said.extend(others.iter().filter(|other| other.0).map(|other| other.1.to_owned()));
         match self.place {
-            Place::Anywhere => {}
-            Place::LowEnd => said.push("only at the low end of the sweep".to_owned()),
-            Place::HighEnd => said.push("only at the high end of the sweep".to_owned()),
+            SweepPart::Anywhere => {}
+            SweepPart::LowEnd => said.push("only at the low end of the sweep".to_owned()),
+            SweepPart::HighEnd => said.push("only at the high end of the sweep".to_owned()),
         }
         said.join(", ")
     }
@@ -207,7 +207,7 @@ pub struct Cause {
 }
 
 /// A line of the table.
-pub struct Line {
+pub struct CauseRow {
     /// The pattern in words.
     pub pattern: &'static str,
     /// Returns true for patterns of this line.
@@ -244,118 +244,124 @@ kinds! {
 /// Patterns of failures and the kinds of bugs that cause them. The first line that applies to a pattern counts. Its
 /// causes are the kinds of most known bugs with that pattern; `tests/it/newcomers/causes.rs` compares the table with all of
 /// them.
-pub static TABLE: &[Line] = &[
-    Line {
+pub static TABLE: &[CauseRow] = &[
+    CauseRow {
         pattern: "a draw is no finite number, or out of its range",
         applies: |p| p.number,
         causes: &[&WEIGHT, &PROBABILITY],
     },
-    Line {
+    CauseRow {
         pattern: "draws lack bits, the mean is right",
         applies: |p| p.resolution && !p.mean.is_off(),
         causes: &[&PRECISION],
     },
-    Line {
+    CauseRow {
         pattern: "draws depend on each other, mean and variance are right",
         applies: |p| p.dependence && !is_sided(p),
         causes: &[&NUMBERS],
     },
-    Line {
+    CauseRow {
         pattern: "a walk does not balance, the mean is right",
         applies: |p| p.balance && !p.mean.is_off(),
         causes: &[&WEIGHT, &PROBABILITY, &PRECISION],
     },
-    Line {
+    CauseRow {
         pattern: "a walk does not balance, the mean is high, the variance low",
-        applies: |p| p.balance && (p.mean, p.variance) == (Side::High, Side::Low),
+        applies: |p| p.balance && (p.mean, p.variance) == (DeviationSide::High, DeviationSide::Low),
         causes: &[&WEIGHT],
     },
-    Line {
+    CauseRow {
         pattern: "a walk does not balance",
         applies: |p| p.balance,
         causes: &[&CONTROL, &WEIGHT, &PROBABILITY, &DENSITIES],
     },
-    Line {
+    CauseRow {
         pattern: "lookups are off, mean and variance are right",
         applies: |p| p.lookups.is_off() && !p.mean.is_off() && !p.variance.is_off(),
         causes: &[&LOOKUP, &FLIGHT],
     },
-    Line {
+    CauseRow {
         pattern: "lookups are high, the mean is high",
-        applies: |p| (p.lookups, p.mean) == (Side::High, Side::High),
+        applies: |p| (p.lookups, p.mean) == (DeviationSide::High, DeviationSide::High),
         causes: &[&PROBABILITY, &NUMBERS, &ENDING, &FLIGHT],
     },
-    Line {
+    CauseRow {
         pattern: "lookups are high, the mean is low",
-        applies: |p| (p.lookups, p.mean) == (Side::High, Side::Low),
+        applies: |p| (p.lookups, p.mean) == (DeviationSide::High, DeviationSide::Low),
         causes: &[&FLIGHT, &NUMBERS, &WEIGHT, &LOOKUP],
     },
-    Line {
+    CauseRow {
         pattern: "lookups are low, the mean is high",
-        applies: |p| (p.lookups, p.mean) == (Side::Low, Side::High),
+        applies: |p| (p.lookups, p.mean) == (DeviationSide::Low, DeviationSide::High),
         causes: &[&FLIGHT, &PROBABILITY, &ENDING, &NUMBERS],
     },
-    Line {
+    CauseRow {
         pattern: "lookups are low, the mean is low",
-        applies: |p| (p.lookups, p.mean) == (Side::Low, Side::Low),
+        applies: |p| (p.lookups, p.mean) == (DeviationSide::Low, DeviationSide::Low),
         causes: &[&LOOKUP, &ENDING, &NUMBERS, &WEIGHT],
     },
-    Line {
+    CauseRow {
         pattern: "lookups are off in another way, with the mean or the variance",
         applies: |p| p.lookups.is_off(),
         causes: &[&NUMBERS, &DIRECTIONS, &CHANNELS, &FLIGHT],
     },
-    Line {
+    CauseRow {
         pattern: "draws are 0 or 1, the share of 1 is off",
         applies: |p| p.binary && (p.mean.is_off() || p.distribution),
         causes: &[&PROBABILITY, &LOOKUP, &FLIGHT, &ENDING],
     },
-    Line {
+    CauseRow {
         pattern: "the variance is off, the mean is right",
         applies: |p| p.variance.is_off() && !p.mean.is_off(),
         causes: &[&ANOTHER, &CONTROL, &NUMBERS],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is high in one channel and low in another",
-        applies: |p| p.mean == Side::Both,
+        applies: |p| p.mean == DeviationSide::Both,
         causes: &[&CHANNELS, &DENSITIES, &WEIGHT, &DIRECTIONS],
     },
-    Line {
+    CauseRow {
         pattern: "the distribution differs",
         applies: |p| p.distribution,
         causes: &[&FLIGHT, &CONTROL, &LOOKUP],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is high, the variance high",
-        applies: |p| p.mean == Side::High && matches!(p.variance, Side::High | Side::Both),
+        applies: |p| {
+            p.mean == DeviationSide::High
+                && matches!(p.variance, DeviationSide::High | DeviationSide::Both)
+        },
         causes: &[&DENSITIES, &SCORE, &WEIGHT, &CONTROL],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is low, the variance low",
-        applies: |p| p.mean == Side::Low && matches!(p.variance, Side::Low | Side::Both),
+        applies: |p| {
+            p.mean == DeviationSide::Low
+                && matches!(p.variance, DeviationSide::Low | DeviationSide::Both)
+        },
         causes: &[&WEIGHT, &DENSITIES, &SCORE, &DIRECTIONS],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is low, the variance high",
-        applies: |p| (p.mean, p.variance) == (Side::Low, Side::High),
+        applies: |p| (p.mean, p.variance) == (DeviationSide::Low, DeviationSide::High),
         causes: &[&CONTROL, &LOOKUP, &SCORE, &DENSITIES],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is high, the variance low",
-        applies: |p| (p.mean, p.variance) == (Side::High, Side::Low),
+        applies: |p| (p.mean, p.variance) == (DeviationSide::High, DeviationSide::Low),
         causes: &[&WEIGHT, &PROBABILITY],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is high, the variance is right or not tested",
-        applies: |p| p.mean == Side::High,
+        applies: |p| p.mean == DeviationSide::High,
         causes: &[&DENSITIES, &WEIGHT, &SCORE],
     },
-    Line {
+    CauseRow {
         pattern: "the mean is low, the variance is right or not tested",
-        applies: |p| p.mean == Side::Low,
+        applies: |p| p.mean == DeviationSide::Low,
         causes: &[&DENSITIES, &WEIGHT, &DIRECTIONS, &ENDING],
     },
-    Line {
+    CauseRow {
         pattern: "values of one walk are wrongly correlated, each by itself is right",
         applies: |p| p.curve,
         causes: &[&NUMBERS, &FLIGHT],
@@ -366,10 +372,10 @@ pub static TABLE: &[Line] = &[
 fn is_sided(pattern: &Pattern) -> bool {
     pattern.mean.is_off()
         || pattern.variance.is_off()
-        || matches!(pattern.lookups, Side::Low | Side::High)
+        || matches!(pattern.lookups, DeviationSide::Low | DeviationSide::High)
 }
 
 /// The line of a pattern; `None` where nothing failed.
-pub fn line(pattern: &Pattern) -> Option<&'static Line> {
+pub fn line(pattern: &Pattern) -> Option<&'static CauseRow> {
     TABLE.iter().find(|line| (line.applies)(pattern))
 }

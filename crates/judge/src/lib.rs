@@ -7,6 +7,6 @@ pub mod files;
 pub mod images;
 pub mod whole;
 
-pub use files::{Column, Draws, ForeignError, Format, Layout, count};
+pub use files::{Column, DrawSource, ForeignError, Layout, NumberFormat, count};
 
 pub use gate::session::*;

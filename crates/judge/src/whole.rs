@@ -26,9 +26,9 @@ const FIRST: u64 = 1 << 11;
 
 /// The distribution of an experiment's draw.
 #[derive(Debug)]
-pub struct Known(pub Arc<Prediction>);
+pub struct KnownDistribution(pub Arc<Prediction>);
 
-impl Distribution for Known {
+impl Distribution for KnownDistribution {
     fn tests(&self, asked: TestRequest) -> Result<Box<dyn Tests>, String> {
         let Prediction { distribution, increments, channels, .. } = &*self.0;
         let has_values = distribution.is_some() || !increments.is_empty();

@@ -14,7 +14,7 @@
 //! whatever the rounding of its cubic: 0 is the minimum.
 
 use super::lattice::Track;
-use numeric::{Lane, Row, Span, order};
+use numeric::{CacheRow, Lane, Span, order};
 
 /// Cubics along a ray.
 pub struct Cubics {
@@ -24,7 +24,7 @@ pub struct Cubics {
     /// The planes below the beginning.
     below: f64,
     /// The coefficients of each cell and its beginning.
-    rows: Vec<Row>,
+    rows: Vec<CacheRow>,
 }
 
 impl Cubics {
@@ -52,7 +52,7 @@ impl Cubics {
         let ends = knots[1..].iter().copied().chain(std::iter::once(inside.to));
         let row = |(&from, to): (&f64, f64)| {
             let [a, b, c, d] = cubic(from + 0.5 * (to - from), from);
-            Row([a, b, c, d, from, 0.0, 0.0, 0.0])
+            CacheRow([a, b, c, d, from, 0.0, 0.0, 0.0])
         };
         let rows = knots.iter().zip(ends).map(row).collect();
         let mut cubics = Self { start: start.map(|a| a - 0.5), slope, below: 0.0, rows };

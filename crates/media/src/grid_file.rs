@@ -13,7 +13,7 @@ use std::path::Path;
 
 use super::axes::Axes;
 use super::grid_vdb;
-use crate::files::number::Number;
+use crate::files::number::NumberType;
 use crate::files::vol::Vol;
 use crate::files::{npy, nvdb, pbrt, vdb};
 use crate::formats::Format;
@@ -65,7 +65,7 @@ impl Format {
 
 /// Part of a file that is read.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Choice {
+pub struct GridChoice {
     /// The name of a grid; `None` for the only one.
     pub grid: Option<String>,
     /// The channel, counted from 0; `None` for the only one.
@@ -75,10 +75,10 @@ pub struct Choice {
 }
 
 /// Function that reads a grid from the bytes of a file.
-pub type Reader = fn(&[u8], &Choice) -> Result<Samples, Unreadable>;
+pub type GridReader = fn(&[u8], &GridChoice) -> Result<Samples, Unreadable>;
 
 /// Returns the reader of grids of a format; `None` for formats that hold none.
-pub fn reader(format: Format) -> Option<Reader> {
+pub fn reader(format: Format) -> Option<GridReader> {
     Some(match format {
         Format::Vol => |bytes, choice| read_vol(bytes, choice.channel),
         Format::Npy => |bytes, choice| read_npy(bytes, choice.axes),
@@ -100,7 +100,7 @@ pub fn reader(format: Format) -> Option<Reader> {
 /// # Errors
 ///
 /// The file is no grid of finite, non-negative samples.
-pub fn read(path: &Path, choice: &Choice) -> Result<Samples, Unreadable> {
+pub fn read(path: &Path, choice: &GridChoice) -> Result<Samples, Unreadable> {
     let Some(reader) = Format::of(path).and_then(reader) else {
         let grids = Format::list(|format| reader(format).is_some());
         return wrong(format!("the file is none of {grids}"), "convert it to one of them");
@@ -190,7 +190,7 @@ fn read_npy(mut bytes: &[u8], axes: Axes) -> Result<Samples, Unreadable> {
             format!("a grid has from 1 to {MAX_SAMPLES} samples"),
         );
     };
-    let Some(number) = Number::named(&header.kind) else {
+    let Some(number) = NumberType::named(&header.kind) else {
         return wrong(format!("the samples have the type {}", header.kind), ARRAY);
     };
     let wanted = number.width() * shape.iter().product::<usize>();

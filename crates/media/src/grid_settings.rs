@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::axes::Axes;
-use super::grid_file::{self, Choice, MAX_SAMPLES, Samples};
+use super::grid_file::{self, GridChoice, MAX_SAMPLES, Samples};
 use super::voxels::Placement;
 use super::{body, lattice};
 use crate::catalogue::{Settings, Value};
@@ -44,7 +44,7 @@ pub(super) fn read_samples(settings: &Settings) -> Option<Samples> {
 }
 
 /// Part of the file that is read; each setting applies to some formats only.
-fn read_choice(settings: &Settings) -> Option<Choice> {
+fn read_choice(settings: &Settings) -> Option<GridChoice> {
     let format = format(settings);
     let is_for = |key: &'static str, takes: fn(Format) -> bool, more: &str| {
         let is_right = !settings.has(key) || format.is_some_and(takes);
@@ -68,7 +68,7 @@ fn read_choice(settings: &Settings) -> Option<Choice> {
     let channel = settings.optional("channel", |key| settings.count(key, 0..=65_535));
     let axes = settings.word_or("axes", &Axes::NAMES, "zyx");
     let channel = channel.ok()?.and_then(|channel| usize::try_from(channel).ok());
-    Some(Choice { grid: grid.ok()?, channel, axes: Axes::named(axes?)? })
+    Some(GridChoice { grid: grid.ok()?, channel, axes: Axes::named(axes?)? })
 }
 
 /// Contents of the file as sentences: voxels along each axis and the box.

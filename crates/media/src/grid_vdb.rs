@@ -12,7 +12,7 @@
 //! rotated one.
 
 use super::grid_file::{Samples, Turned, Unreadable, sizes, wrong};
-use crate::files::vdb::{Grid, LEAF, Transform, Tree};
+use crate::files::vdb::{LEAF, Transform, Tree, VdbGrid};
 use numeric::digits::number;
 use numeric::geometry::{Aabb, Point};
 
@@ -21,7 +21,7 @@ use numeric::geometry::{Aabb, Point};
 /// # Errors
 ///
 /// The grid has other than finite, non-negative samples, or no end.
-pub fn samples(grid: &Grid) -> Result<Samples, Unreadable> {
+pub fn samples(grid: &VdbGrid) -> Result<Samples, Unreadable> {
     if grid.class == "level set" {
         let help = "make a fog volume of it, by openvdb::tools::sdfToFogVolume";
         return wrong("its grid is a level set: distances from a surface", help);
@@ -84,7 +84,7 @@ pub fn reach(tree: &Tree) -> Option<[[i64; 3]; 2]> {
 }
 
 /// All samples between two indices.
-fn dense(grid: &Grid, low: [i64; 3], high: [i64; 3]) -> Result<Samples, Unreadable> {
+fn dense(grid: &VdbGrid, low: [i64; 3], high: [i64; 3]) -> Result<Samples, Unreadable> {
     let edges: [u64; 3] = std::array::from_fn(|j| high[j].abs_diff(low[j]) + 1);
     let size = sizes(edges).map_err(|Unreadable { message, help }| Unreadable {
         message: format!("{message}, from index {low:?} to {high:?}"),

@@ -49,7 +49,7 @@ impl<F: Field> Formula<3> for Within<'_, F> {
 }
 
 /// The lookups of one field on the hardware of one level. All have the bits of [`Batch::one`].
-trait Batch<const N: usize>: Send + Sync {
+trait FieldLookups<const N: usize>: Send + Sync {
     /// `σ_t` at one place.
     fn one(&self, place: [f64; N]) -> f64;
 
@@ -66,7 +66,7 @@ struct Compiled<F, S> {
     simd: S,
 }
 
-impl<const N: usize, F: Formula<N>, S: Hardware> Batch<N> for Compiled<F, S> {
+impl<const N: usize, F: Formula<N>, S: Hardware> FieldLookups<N> for Compiled<F, S> {
     fn one(&self, place: [f64; N]) -> f64 {
         self.simd.vectorize(
             #[inline(always)]
@@ -125,7 +125,7 @@ impl<F> OneByOne<F> {
     }
 }
 
-impl<const N: usize, F: Formula<N>> Batch<N> for OneByOne<F> {
+impl<const N: usize, F: Formula<N>> FieldLookups<N> for OneByOne<F> {
     fn one(&self, place: [f64; N]) -> f64 {
         let mut found = [0.0];
         self.each(place.each_ref().map(std::slice::from_ref), &mut found);
@@ -149,7 +149,7 @@ impl<const N: usize, F: Formula<N>> Batch<N> for OneByOne<F> {
 fn compiled<'a, const N: usize>(
     formula: impl Formula<N> + 'a,
     level: Level,
-) -> Box<dyn Batch<N> + 'a> {
+) -> Box<dyn FieldLookups<N> + 'a> {
     match pack::on(level, Compile::<N, _>(formula, PhantomData)) {
         Ok(batch) => batch,
         Err(Compile(formula, _)) => Box::new(OneByOne(formula)),
@@ -159,7 +159,7 @@ fn compiled<'a, const N: usize>(
 struct Compile<'a, const N: usize, F>(F, PhantomData<&'a ()>);
 
 impl<'a, const N: usize, F: Formula<N> + 'a> Task for Compile<'a, N, F> {
-    type Output = Box<dyn Batch<N> + 'a>;
+    type Output = Box<dyn FieldLookups<N> + 'a>;
 
     fn run<S: Hardware>(self, simd: S) -> Self::Output {
         Box::new(Compiled { formula: self.0, simd })
@@ -215,7 +215,7 @@ impl<F: DepthFormula, S: Hardware> Depths for Compiled<&F, S> {
 
 /// A field along a ray for kernels: `σ_t` in 1/length at distances inside the support.
 pub struct Lookups<'a> {
-    batch: Box<dyn Batch<1> + 'a>,
+    batch: Box<dyn FieldLookups<1> + 'a>,
     single_value: Option<f64>,
     is_costly: bool,
     inlined: Option<Inlined<'a>>,
@@ -301,7 +301,7 @@ impl Extinction for Lookups<'_> {
 
 /// A field in space for packets of walks: one indirect call returns σ_t at sixteen points.
 pub struct Batches<'a> {
-    batch: Box<dyn Batch<3> + 'a>,
+    batch: Box<dyn FieldLookups<3> + 'a>,
     depths: Option<Box<dyn Depths + 'a>>,
     single_value: Option<f64>,
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 
-use super::sampling::Table;
+use super::sampling::InverseTable;
 use super::{Extinction, Inverse, Lookups, Profile};
 use numeric::{Known, Lane, Span};
 
@@ -93,7 +93,7 @@ impl Medium {
     /// The inverse, prepared for many depths.
     pub fn inverse(&self) -> Inverse {
         let needs_table = !self.support.is_empty() && !self.profile.facts().has_inverse;
-        let table = needs_table.then(|| Table::of(self.profile(), self.support));
+        let table = needs_table.then(|| InverseTable::of(self.profile(), self.support));
         Inverse::new(self.clone(), table)
     }
 

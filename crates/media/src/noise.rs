@@ -55,13 +55,13 @@ use numeric::{Known, Lane, Span, quadrature::GaussLegendre};
 
 /// A volume of noise.
 pub struct Noise {
-    spectrum: Spectrum,
+    spectrum: NoiseOctaves,
     bounds: Bounds,
 }
 
 /// The octaves of a noise.
 #[derive(Debug, Clone, Copy)]
-struct Spectrum {
+struct NoiseOctaves {
     extinction: f64,
     frequency: f64,
     octaves: u32,
@@ -72,7 +72,7 @@ struct Spectrum {
     unit: f64,
 }
 
-impl Spectrum {
+impl NoiseOctaves {
     /// Amplitude and seed of each octave.
     #[inline(always)]
     fn amplitudes(self) -> impl Iterator<Item = (f64, u32)> {
@@ -114,7 +114,7 @@ impl Spectrum {
 
 /// Noise along a ray.
 pub struct NoiseRay {
-    spectrum: Spectrum,
+    spectrum: NoiseOctaves,
     track: Track,
     octaves: Vec<Octave>,
     rule: GaussLegendre,
@@ -172,7 +172,7 @@ impl OpticalDepth for NoiseRay {
             let size: f64 = ends.as_flattened().iter().map(|x| x.abs()).sum();
             error += octave.amplitude * (integral.error + 3.0 * f64::EPSILON * size * length);
         }
-        let Spectrum { extinction, unit, .. } = self.spectrum;
+        let NoiseOctaves { extinction, unit, .. } = self.spectrum;
         let mean = 0.5 * extinction * length;
         let rounding = 4.0 * f64::EPSILON * (mean + (unit * fbm).abs());
         Known::new(mean + unit * fbm, rounding + unit * error)
@@ -199,7 +199,7 @@ impl Noise {
         bounds: Bounds,
     ) -> Self {
         let (gain, fade, unit) = (0.5, Fade::Quintic, 0.0);
-        let spectrum = Spectrum { extinction, frequency, octaves, gain, seed, fade, unit };
+        let spectrum = NoiseOctaves { extinction, frequency, octaves, gain, seed, fade, unit };
         Self { spectrum: spectrum.with_unit(), bounds }
     }
 }
@@ -218,7 +218,7 @@ fn read_volume(settings: &Settings) -> Option<Noise> {
     let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
     let fade = settings.one_of("fade", &[("quintic", Fade::Quintic), ("cubic", Fade::Cubic)]);
     let bounds = body::read_bounds(settings);
-    let spectrum = Spectrum {
+    let spectrum = NoiseOctaves {
         extinction: extinction?,
         frequency: frequency?,
         octaves: octaves? as u32,
@@ -236,7 +236,7 @@ impl Field for Noise {
     }
 
     fn facts(&self) -> Facts<'_> {
-        let Spectrum { frequency, octaves, .. } = self.spectrum;
+        let NoiseOctaves { frequency, octaves, .. } = self.spectrum;
         // Planes in three directions, √3 of them per cell's length; the finest octave has half of all.
         let pieces_per_length = 3f64.sqrt() * frequency * f64::from(1u32 << octaves);
         Facts { smoothness: Smoothness::SmoothCells, pieces_per_length, ..Facts::default() }
@@ -259,7 +259,7 @@ impl Field for Noise {
     }
 
     fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile> {
-        let Spectrum { frequency, fade, .. } = self.spectrum;
+        let NoiseOctaves { frequency, fade, .. } = self.spectrum;
         let track = track(ray, frequency);
         let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
         let amplitudes = self.spectrum.amplitudes().zip(tracks);
@@ -277,7 +277,7 @@ impl Field for Noise {
     /// The first octaves without rescaling: the unit stays that of all.
     fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>> {
         let octaves = self.spectrum.octaves.min(u32::try_from(octaves).ok()?);
-        let spectrum = Spectrum { octaves, ..self.spectrum };
+        let spectrum = NoiseOctaves { octaves, ..self.spectrum };
         Some(Arc::new(Self { spectrum, bounds: self.bounds }))
     }
 }

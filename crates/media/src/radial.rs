@@ -50,7 +50,7 @@ pub struct Radial {
 }
 
 /// A ball along a ray, or along rays side by side.
-pub struct Chord<L = f64> {
+pub struct RadialChord<L = f64> {
     foot: L,
     /// 1/radius.
     scale: f64,
@@ -59,7 +59,7 @@ pub struct Chord<L = f64> {
     coefficients: [f64; MAX_COEFFICIENTS],
 }
 
-impl<L: Lane> Chord<L> {
+impl<L: Lane> RadialChord<L> {
     /// σ_t at distances.
     #[inline(always)]
     fn value(&self, t: L) -> L {
@@ -93,11 +93,11 @@ const GAUSS: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-impl Extinction for Chord {
+impl Extinction for RadialChord {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
         let &Self { foot, scale, offset, coefficients } = self;
-        Chord { foot: t.each(foot), scale, offset: t.each(offset), coefficients }.value(t)
+        RadialChord { foot: t.each(foot), scale, offset: t.each(offset), coefficients }.value(t)
     }
 
     fn facts(&self) -> Facts<'_> {
@@ -106,7 +106,7 @@ impl Extinction for Chord {
     }
 }
 
-impl OpticalDepth for Chord {
+impl OpticalDepth for RadialChord {
     fn optical_depth(&self, span: Span) -> Known {
         let depth = self.integral(span.middle(), 0.5 * span.length());
         // The error of an argument changes σ_t by its slope, |dσ/dx| |dx| with x ≤ 1.
@@ -125,14 +125,14 @@ impl Radial {
 
     /// The ball along rays with these origins and directions.
     #[inline(always)]
-    fn chord<L: Lane>(&self, [[a, b, c], [x, y, z]]: [[L; 3]; 2]) -> Chord<L> {
+    fn chord<L: Lane>(&self, [[a, b, c], [x, y, z]]: [[L; 3]; 2]) -> RadialChord<L> {
         let Point([u, v, w]) = self.centre;
         let (a, b, c) = (a.each(u) - a, b.each(v) - b, c.each(w) - c);
         let foot = a * x + b * y + c * z;
         let scale = 1.0 / self.radius;
         let (a, b, c) = ((a - x * foot) * scale, (b - y * foot) * scale, (c - z * foot) * scale);
         let offset = a * a + b * b + c * c;
-        Chord { foot, scale, offset, coefficients: self.coefficients }
+        RadialChord { foot, scale, offset, coefficients: self.coefficients }
     }
 
     /// Candidates for the extremes of σ_t in x: the ends of a range and the roots of the slope inside.

@@ -9,7 +9,7 @@ use crate::catalogue::{OwnPages, Settings};
 type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
 
 /// A field and its name in the catalogue.
-type Named<T> = (String, Arc<T>);
+type NamedField<T> = (String, Arc<T>);
 
 /// Reader of the fields of a page: along a ray, in space, or both.
 pub struct Reader {
@@ -89,7 +89,10 @@ pub fn extinctions(name: &str, own_pages: &OwnPages) -> &'static [&'static str] 
 
 /// Reads a field along a line: `medium.NAME = { … }`, or without a key `{ NAME = { … } }`. Returns its name in the
 /// catalogue and the field.
-pub(super) fn read_line(settings: &Settings, key: Option<&'static str>) -> Option<Named<Profile>> {
+pub(super) fn read_line(
+    settings: &Settings,
+    key: Option<&'static str>,
+) -> Option<NamedField<Profile>> {
     let other = "this field has no 1-D form";
     let help = "write `volume` instead of `medium`, and give a `ray`";
     read(settings, key, |reader| reader.line.as_ref(), [other, help])
@@ -97,14 +100,14 @@ pub(super) fn read_line(settings: &Settings, key: Option<&'static str>) -> Optio
 
 /// Reads a field in space, `KEY.NAME = { … }`, or without a key `{ NAME = { … } }`. Returns its name in the catalogue
 /// and the field.
-pub fn read_volume(settings: &Settings, key: Option<&'static str>) -> Option<Named<Volume>> {
+pub fn read_volume(settings: &Settings, key: Option<&'static str>) -> Option<NamedField<Volume>> {
     let other = "this field has no 3-D form";
     let help = "write `medium` instead of `volume`, and give a `span`";
     read(settings, key, |reader| reader.volume.as_ref(), [other, help])
 }
 
 /// Reads a list of fields in space, `volume = [{ NAME = { … } }, …]`, each with its name.
-pub fn read_volumes(settings: &Settings) -> Option<Vec<Named<Volume>>> {
+pub fn read_volumes(settings: &Settings) -> Option<Vec<NamedField<Volume>>> {
     let fields: Vec<_> =
         settings.tables("volume")?.iter().map(|table| read_volume(table, None)).collect();
     fields.into_iter().collect()
@@ -116,7 +119,7 @@ fn read<T: ?Sized>(
     key: Option<&'static str>,
     form: fn(&Reader) -> Option<&Read<T>>,
     other: [&str; 2],
-) -> Option<Named<T>> {
+) -> Option<NamedField<T>> {
     let own_pages = settings.own_pages();
     let with_form = pages(own_pages).filter_map(|(name, reader)| Some((name, form(reader)?)));
     let (mut names, reads): (Vec<String>, Vec<&Read<T>>) = with_form.unzip();

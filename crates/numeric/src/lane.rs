@@ -19,7 +19,7 @@ pub const WIDTH: usize = 8;
 /// A row of a table: one line of the processor's cache.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(align(64))]
-pub struct Row(pub [f64; 8]);
+pub struct CacheRow(pub [f64; 8]);
 
 /// A double, or a pack of doubles that is treated element by element.
 ///
@@ -237,7 +237,7 @@ pub trait Lane:
     fn entry(self, list: &[f64]) -> Self;
 
     /// Returns the first five columns of the rows of a table at these indices; the last row for indices beyond it.
-    fn columns(self, table: &[Row]) -> [Self; 5];
+    fn columns(self, table: &[CacheRow]) -> [Self; 5];
 
     /// Maximum; `other` if one of the two is NaN.
     #[must_use]
@@ -384,7 +384,7 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn columns(self, table: &[Row]) -> [Self; 5] {
+    fn columns(self, table: &[CacheRow]) -> [Self; 5] {
         let [a, b, c, d, e, ..] = table[place(self, table.len())].0;
         [a, b, c, d, e]
     }

@@ -32,7 +32,7 @@ pub use double_double::DoubleDouble;
 pub use exponential_integral::exponential_integrals;
 pub use jet::{Jet, Scalar};
 pub use known::{Grade, Known, Span};
-pub use lane::{Lane, Row};
+pub use lane::{CacheRow, Lane};
 pub use mask::{Kept, Mask};
 #[cfg(feature = "packs")]
 pub use pair::Pair;

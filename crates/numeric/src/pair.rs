@@ -11,7 +11,7 @@ use std::ops::{
 use super::mask::Mask;
 use super::pack::{Hardware, WIDTH};
 use super::words::Words32;
-use super::{Lane, Row, elementary};
+use super::{CacheRow, Lane, elementary};
 
 /// Two lanes, or what belongs to them: their masks, their words.
 #[derive(Debug, Clone, Copy)]
@@ -205,7 +205,7 @@ impl<L: Lane> Lane for Pair<L> {
     }
 
     #[inline(always)]
-    fn columns(self, table: &[Row]) -> [Self; 5] {
+    fn columns(self, table: &[CacheRow]) -> [Self; 5] {
         let ([a, b, c, d, e], [f, g, h, i, j]) = (self.0.columns(table), self.1.columns(table));
         [Self(a, f), Self(b, g), Self(c, h), Self(d, i), Self(e, j)]
     }

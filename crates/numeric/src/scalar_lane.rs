@@ -9,7 +9,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::words::apart;
-use super::{Lane, Row};
+use super::{CacheRow, Lane};
 
 /// Adding and subtracting `1.5·2^52` rounds a double of size below `2^51` to the nearest integer.
 pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -184,7 +184,7 @@ impl Lane for F32 {
     }
 
     #[inline(always)]
-    fn columns(self, table: &[Row]) -> [Self; 5] {
+    fn columns(self, table: &[CacheRow]) -> [Self; 5] {
         let [a, b, c, d, e] = self.double().columns(table);
         [Self::of(a), Self::of(b), Self::of(c), Self::of(d), Self::of(e)]
     }

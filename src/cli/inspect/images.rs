@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::{Item, Spread};
-use crate::judge::files::{Column, Draws, Format};
-use media::files::exr::{self, Part};
+use super::{Item, NumberSummary};
+use crate::judge::files::{Column, DrawSource, NumberFormat};
+use media::files::exr::{self, ExrPart};
 use media::files::{Pixels, Unreadable, pfm, wrong};
 
 const PIXELS: &str = "pixels (columns, rows)";
@@ -20,7 +20,7 @@ pub fn exr(bytes: Vec<u8>) -> Result<Vec<Item>, Unreadable> {
     let first = items.first_mut();
     match (exr::read(bytes), first) {
         (Ok(pixels), Some(first)) => {
-            Spread::of(pixels.values).tell(first);
+            NumberSummary::of(pixels.values).tell(first);
             let read = if pixels.channels == 3 { "R, G and B" } else { "Y, or the first channel" };
             first.details.push(format!("values are those of {read}"));
         }
@@ -34,11 +34,11 @@ pub fn exr(bytes: Vec<u8>) -> Result<Vec<Item>, Unreadable> {
     Ok(items)
 }
 
-fn item(part: &Part, is_one_of_several: bool) -> Item {
+fn item(part: &ExrPart, is_one_of_several: bool) -> Item {
     let kinds: Vec<&str> = part.channels.iter().map(|channel| channel.kind).collect();
     let mut different = kinds.clone();
     different.dedup();
-    let name = |channel: &exr::Channel| match (different.len(), channel.sampling) {
+    let name = |channel: &exr::ExrChannel| match (different.len(), channel.sampling) {
         (1, [1, 1]) => channel.name.clone(),
         (_, [1, 1]) => format!("{} {}", channel.name, channel.kind),
         (_, [x, y]) => format!("{} {} (one of {x} × {y} pixels)", channel.name, channel.kind),
@@ -79,7 +79,7 @@ pub fn pfm(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
         channels: Some(channels as u64),
         ..Item::default()
     };
-    Spread::of(values).tell(&mut item);
+    NumberSummary::of(values).tell(&mut item);
     Ok(vec![item])
 }
 
@@ -91,17 +91,19 @@ const BLOCK: usize = 1 << 14;
 /// Returns the columns of a file of draws, a table of text or raw numbers.
 pub fn draws(path: &Path) -> anyhow::Result<Vec<Item>> {
     let file = path.display().to_string();
-    let Some(Format::Csv { lookups, .. }) = Format::of_path(path) else {
-        let format = Format::of_path(path).unwrap_or(Format::Raw);
-        let kind = format!("float{}, little-endian", if format == Format::Raw { 64 } else { 32 });
-        let item = column(Draws::open(path, format)?, &file)?;
+    let Some(NumberFormat::Csv { lookups, .. }) = NumberFormat::of_path(path) else {
+        let format = NumberFormat::of_path(path).unwrap_or(NumberFormat::Raw);
+        let kind =
+            format!("float{}, little-endian", if format == NumberFormat::Raw { 64 } else { 32 });
+        let item = column(DrawSource::open(path, format)?, &file)?;
         return Ok(vec![Item { format: "raw draws".to_owned(), kind, ..item }]);
     };
     let names = names(path)?;
     let mut items = Vec::new();
     for (place, name) in names.into_iter().enumerate().take(MAX_COLUMNS) {
-        let format = Format::Csv { column: Some(Column::Index(place)), lookups: lookups.clone() };
-        let item = column(Draws::open(path, format)?, &file)?;
+        let format =
+            NumberFormat::Csv { column: Some(Column::Index(place)), lookups: lookups.clone() };
+        let item = column(DrawSource::open(path, format)?, &file)?;
         let (format, kind) = ("table of draws".to_owned(), "text".to_owned());
         items.push(Item { format, name, kind, ..item });
     }
@@ -126,8 +128,8 @@ fn names(path: &Path) -> anyhow::Result<Vec<String>> {
 }
 
 /// Reads all draws of a column.
-fn column(mut draws: Draws, file: &str) -> anyhow::Result<Item> {
-    let (mut spread, mut count, mut buffer) = (Spread::default(), 0, Vec::new());
+fn column(mut draws: DrawSource, file: &str) -> anyhow::Result<Item> {
+    let (mut spread, mut count, mut buffer) = (NumberSummary::default(), 0, Vec::new());
     while draws.read(&mut buffer, BLOCK)? > 0 {
         count += buffer.len() as u64;
         for &draw in &buffer {

@@ -24,7 +24,7 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     /// Format of the grids, images and columns that are printed
     #[arg(long, value_enum, default_value_t)]
-    format: output::Format,
+    format: output::RowFormat,
 }
 
 /// Prints the content of each file. A file that cannot be read is an error, and the others are still printed.
@@ -35,10 +35,10 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         items.extend(errors.keep(found));
     }
     let text = match arguments.format {
-        output::Format::Table if console.quiet => String::new(),
-        output::Format::Table => table(&items),
-        output::Format::Csv => csv(&items)?,
-        output::Format::Json => json::pretty(&items)? + "\n",
+        output::RowFormat::Table if console.quiet => String::new(),
+        output::RowFormat::Table => table(&items),
+        output::RowFormat::Csv => csv(&items)?,
+        output::RowFormat::Json => json::pretty(&items)? + "\n",
     };
     output::print(&text)?;
     Ok(if errors.is_empty() { 0 } else { errors.close(USAGE) })
@@ -126,7 +126,7 @@ pub struct Item {
 
 /// Minimum, maximum and mean of numbers, and the number of those that are not finite.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Spread {
+pub struct NumberSummary {
     ends: Option<[f64; 2]>,
     sum: f64,
     finite: f64,
@@ -136,7 +136,7 @@ pub struct Spread {
     pub negative: f64,
 }
 
-impl Spread {
+impl NumberSummary {
     /// Adds a value that occurs a number of times.
     pub fn add(&mut self, value: f64, times: f64) {
         if !value.is_finite() {

@@ -1,8 +1,8 @@
 //! Voxel grids, and arrays of `NumPy`: draws, images, stacks of images or grids, by their axes.
 
-use super::{Item, Spread};
-use media::files::number::Number;
-use media::files::vdb::{Grid, Transform};
+use super::{Item, NumberSummary};
+use media::files::number::NumberType;
+use media::files::vdb::{Transform, VdbGrid};
 use media::files::{Unreadable, npy, nvdb, pbrt, vdb, vol::Vol, wrong};
 use media::grid_vdb;
 use numeric::digits::number;
@@ -10,7 +10,7 @@ use numeric::digits::number;
 const VOXELS: &str = "voxels (x, y, z)";
 
 /// Adds a note that an item cannot be a medium, if a value is negative or not finite.
-fn doubt(item: &mut Item, spread: &Spread) {
+fn doubt(item: &mut Item, spread: &NumberSummary) {
     if spread.negative > 0.0 {
         let many = spread.negative;
         item.notes.push(format!("no medium: {many} values are negative, and an extinction is not"));
@@ -36,7 +36,7 @@ pub fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
     }
     let channels = usize::try_from(vol.channels).unwrap_or(usize::MAX);
     let items = (0..channels.min(64)).map(|channel| {
-        let spread = Spread::of(vol.values(channel));
+        let spread = NumberSummary::of(vol.values(channel));
         let mut item = Item {
             format: "Mitsuba grid".to_owned(),
             name: if channels == 1 { String::new() } else { format!("channel {channel}") },
@@ -63,7 +63,7 @@ pub fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
         let mut item = Item { format: "pbrt scene".to_owned(), name, ..Item::default() };
         match grid {
             Ok(grid) => {
-                let spread = Spread::of(grid.density.iter().copied());
+                let spread = NumberSummary::of(grid.density.iter().copied());
                 (item.kind, item.class) = ("text".to_owned(), "density".to_owned());
                 (item.size, item.counts) = (grid.size.to_vec(), VOXELS);
                 spread.tell(&mut item);
@@ -133,7 +133,7 @@ pub fn of_nvdb(bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
 }
 
 /// Adds the facts of a grid of voxels.
-fn tree(item: &mut Item, read: Result<Grid, Unreadable>) {
+fn tree(item: &mut Item, read: Result<VdbGrid, Unreadable>) {
     let grid = match read {
         Ok(grid) => grid,
         Err(Unreadable { message, help }) => {
@@ -149,7 +149,7 @@ fn tree(item: &mut Item, read: Result<Grid, Unreadable>) {
         item.size = (0..3).map(|j| high[j].abs_diff(low[j]) + 1).collect();
         item.counts = VOXELS;
         let all: f64 = item.size.iter().map(|&n| n as f64).product();
-        let (mut spread, mut filled) = (Spread::default(), 0.0);
+        let (mut spread, mut filled) = (NumberSummary::default(), 0.0);
         for (_, edge, value) in grid_vdb::values(&grid.tree) {
             let voxels = (edge as f64).powi(3);
             if value.to_bits() != background.to_bits() {
@@ -204,7 +204,7 @@ pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
         details: vec![format!("shape {shape}, {order}")],
         ..Item::default()
     };
-    let Some(number) = Number::named(&header.kind) else {
+    let Some(number) = NumberType::named(&header.kind) else {
         item.notes.push("not read: its elements are no real numbers".to_owned());
         return Ok(vec![item]);
     };
@@ -219,7 +219,7 @@ pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
             "write one array to its end",
         );
     }
-    let spread = Spread::of(number.all(bytes));
+    let spread = NumberSummary::of(number.all(bytes));
     spread.tell(&mut item);
     let is = |what: String| Some(what);
     let may_be = match *header.shape.as_slice() {

@@ -2,11 +2,11 @@
 
 use anyhow::Context;
 
-use super::{Arguments, Judged};
+use super::{Arguments, JudgedDraws};
 use crate::case::{Case, CaseError, Catalogue};
 use crate::judge::{
-    CheckedClaim, Choice, ChoiceError, Claim, ClaimError, Draws, Layout, Lookups, Options, Session,
-    Theory, TheoryClaims, estimators_of, theory_of,
+    CheckedClaim, ChoiceError, Claim, ClaimError, DrawSource, ExperimentChoice, Layout, Lookups,
+    Options, Session, Theory, TheoryClaims, estimators_of, theory_of,
 };
 
 /// Claims about the draws of a file.
@@ -54,10 +54,10 @@ impl Claimed {
     pub(super) fn judge(
         &self,
         file: &str,
-        draws: &mut Draws,
+        draws: &mut DrawSource,
         wanted: Options,
         length: Option<u64>,
-    ) -> anyhow::Result<Vec<Judged>> {
+    ) -> anyhow::Result<Vec<JudgedDraws>> {
         let values = draws.values();
         let of_channel = self.channel.map(|channel| &self.claims[channel..=channel]);
         let named = of_channel.unwrap_or(&self.claims[..values]);
@@ -70,11 +70,12 @@ impl Claimed {
         });
         let session = Session::new(&claims, wanted, length, taken)?;
         let judgements = session.judge(draws, wanted.until())?;
-        let named = judgements.into_iter().zip(named).map(|(judgement, (channel, _))| Judged {
-            file: file.to_owned(),
-            channel: if values > 1 { channel.clone() } else { String::new() },
-            judgement,
-        });
+        let named =
+            judgements.into_iter().zip(named).map(|(judgement, (channel, _))| JudgedDraws {
+                file: file.to_owned(),
+                channel: if values > 1 { channel.clone() } else { String::new() },
+                judgement,
+            });
         Ok(named.collect())
     }
 }
@@ -102,7 +103,7 @@ impl Arguments {
             );
         };
         let (swept, nearest) = (self.swept, self.nearest);
-        let choice = Choice { estimator, swept, nearest, channel: None, seed: self.seed };
+        let choice = ExperimentChoice { estimator, swept, nearest, channel: None, seed: self.seed };
         let theory = theory_of(case, &choice, self.rounding)?;
         let channel = self.channel_of(case, &theory)?;
         let takes_all = !self.mean_only && self.batch == 1;

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use super::Shown;
+use super::VerdictForm;
 use crate::cli::{Console, USAGE, numbers, output};
 use crate::judge::images::against::{Terms, compare};
-use crate::judge::images::{Claim, Judgement, Level, Options, Stack, files, judge};
+use crate::judge::images::{Claim, ImageOptions, Judgement, Level, Stack, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::JUnitCase;
 use media::formats::Format;
@@ -101,7 +101,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if let (Some(tolerance), true) = (arguments.tolerance, arguments.truth != Some(0.0)) {
         numbers::check_share("--tolerance", tolerance)?;
     }
-    let wanted = Options {
+    let wanted = ImageOptions {
         tile: images.tile.map(|tile| tile as usize),
         tolerance: arguments.tolerance,
         alpha: arguments.alpha,
@@ -122,7 +122,9 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     let mut errors = output::Errors::default();
     if let Some(out) = &images.out {
         let files = errors.write(report::artifacts(&judgement, &name), out);
-        if let Some(files) = files.filter(|_| arguments.format == Shown::Table && !console.quiet) {
+        if let Some(files) =
+            files.filter(|_| arguments.format == VerdictForm::Table && !console.quiet)
+        {
             let page = out.join("z-map.png");
             let map = if files > 1 { format!("map: {}\n", page.display()) } else { String::new() };
             let files = counted(files as u64, "file");
@@ -134,7 +136,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
 }
 
 /// Reads and judges.
-fn judged(arguments: &super::Arguments, wanted: &Options) -> anyhow::Result<Judgement> {
+fn judged(arguments: &super::Arguments, wanted: &ImageOptions) -> anyhow::Result<Judgement> {
     let images = &arguments.images;
     let judged_files = passes(&arguments.files)?;
     let (against, variance_stack) = (passes(&images.against)?, passes(&images.variance_stack)?);
@@ -235,10 +237,10 @@ fn show(
     console: &Console,
 ) -> anyhow::Result<()> {
     match arguments.format {
-        Shown::Table if console.quiet => Ok(()),
-        Shown::Table => {
+        VerdictForm::Table if console.quiet => Ok(()),
+        VerdictForm::Table => {
             output::print(&report::console::block(judgement, name, output::pen(console).width))
         }
-        Shown::Json => output::print(&report::json(judgement)?),
+        VerdictForm::Json => output::print(&report::json(judgement)?),
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::draw::share::Share;
-use crate::plan::{Plan, Planned, PlannedCase};
+use crate::plan::{Plan, PlannedCase, PlannedExperiment};
 use estimators::DrawBuffer;
 use numeric::rng::{hash, name_hash};
 use theory::parallel;
@@ -88,7 +88,7 @@ impl Header {
 }
 
 /// Returns a hash of everything that draws and decisions of an experiment depend on.
-fn key(plan: &Plan, case: &PlannedCase, planned: &Planned, made_by: &str) -> u64 {
+fn key(plan: &Plan, case: &PlannedCase, planned: &PlannedExperiment, made_by: &str) -> u64 {
     let asked: Vec<_> = planned.questions.iter().map(|q| (q.check, q.channel)).collect();
     let numbers = (planned.draws, planned.fixed, planned.horizon, planned.expect_biased);
     let predicted = planned.outcome.as_ref().ok().map(|ready| {
@@ -102,7 +102,7 @@ fn key(plan: &Plan, case: &PlannedCase, planned: &Planned, made_by: &str) -> u64
 }
 
 /// Returns a hash of the first draws: they depend on more than the predictions, such as the order of equal voxels.
-fn first_draws(planned: &Planned) -> Option<u64> {
+fn first_draws(planned: &PlannedExperiment) -> Option<u64> {
     let ready = planned.outcome.as_ref().ok()?;
     let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
     ready.experiment.fill(&mut planned.streams(0), FIRST_DRAWS, &mut buffer);

@@ -17,7 +17,7 @@ pub use self::log::{Key, Log, entry, lock};
 use crate::draw::block::{Block, Draws, Progress};
 use crate::draw::run::{Listener, Step};
 use crate::draw::share::{BlockName, Drawing, Threads, Workers};
-use crate::plan::{Plan, Planned};
+use crate::plan::{Plan, PlannedExperiment};
 
 /// Largest number of finished experiments that are kept for later runs: some 20 MB.
 const MAX_FINISHED: usize = 2000;
@@ -147,7 +147,7 @@ impl Store {
 
     /// Returns the sums of an experiment, interrupted or finished. An experiment that an interrupted run has begun is
     /// continued, even if another run has finished it.
-    pub fn progress(&self, planned: &Planned) -> Option<Progress> {
+    pub fn progress(&self, planned: &PlannedExperiment) -> Option<Progress> {
         let key = self.key(planned.number)?;
         let get = |log: &Log| self.noted(log.get(Key::Progress(key))).flatten();
         let own = self.logs.iter().find_map(get);
@@ -247,7 +247,7 @@ impl Store {
 
 /// Returns whether a later run may use the draws of an experiment. It may not if theory has no moments: 256 draws alone
 /// would distinguish one data file from another.
-fn is_reusable(planned: &Planned) -> bool {
+fn is_reusable(planned: &PlannedExperiment) -> bool {
     planned.outcome.as_ref().is_ok_and(|ready| {
         ready.prediction.channels.iter().all(|channel| channel.moments.is_some())
     })

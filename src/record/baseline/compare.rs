@@ -26,13 +26,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use gate::CheckId;
 use serde::{Deserialize, Serialize};
 
-use super::{Baseline, ChannelId, Entry, Evidence};
+use super::{Baseline, BaselineEntry, ChannelId, CheckEvidence};
 use checks::normality::{Tails, variance_error};
 use gate::stats::normal;
 
 /// Levels of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Rules {
+pub struct ComparisonLevels {
     /// Probability that equal code shows any regression of a variance or of lookups.
     pub alpha: f64,
     /// Relative increase of the time per draw that is no regression; `None` if times are not compared.
@@ -45,7 +45,7 @@ pub struct Comparison {
     /// Name of the stored run.
     pub name: String,
     /// The levels.
-    pub rules: Rules,
+    pub rules: ComparisonLevels,
     /// Number of runs with multiplied e-values, or the reason why they were not multiplied.
     pub sequel: Sequel,
     /// Number of variances and lookups that were compared and share α.
@@ -85,7 +85,7 @@ pub enum Sequel {
 /// Quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Quantity {
+pub enum ComparedQuantity {
     /// Sample variance of one draw.
     Variance,
     /// Lookups per draw.
@@ -96,7 +96,7 @@ pub enum Quantity {
 
 /// Value with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
+pub struct MeasuredValue {
     /// The value.
     #[serde(with = "gate::extended")]
     pub value: f64,
@@ -111,11 +111,11 @@ pub struct Change {
     /// The experiment.
     pub id: ChannelId,
     /// The quantity.
-    pub quantity: Quantity,
+    pub quantity: ComparedQuantity,
     /// Its stored value.
-    pub before: Measured,
+    pub before: MeasuredValue,
     /// Its value now.
-    pub now: Measured,
+    pub now: MeasuredValue,
     /// now/before.
     #[serde(with = "gate::extended")]
     pub ratio: f64,
@@ -213,9 +213,9 @@ pub fn compare(
     name: &str,
     stored: &Baseline,
     run: &Baseline,
-    rules: &Rules,
+    rules: &ComparisonLevels,
 ) -> (Comparison, Baseline) {
-    let place = |entry: &Entry| (entry.id.clone(), entry.case.clone());
+    let place = |entry: &BaselineEntry| (entry.id.clone(), entry.case.clone());
     let Matches { pairs, added, missing, rewritten } =
         Matches::of(&stored.entries, &run.entries, place);
     let questions: Vec<_> = pairs.iter().flat_map(|[before, now]| questions(before, now)).collect();
@@ -247,7 +247,7 @@ pub fn compare(
         missing,
         rewritten,
     };
-    let before: BTreeMap<&ChannelId, &Entry> =
+    let before: BTreeMap<&ChannelId, &BaselineEntry> =
         stored.entries.iter().map(|entry| (&entry.id, entry)).collect();
     let mut next = run.clone();
     if comparison.sequel != Sequel::OtherProgram {
@@ -282,7 +282,7 @@ fn sequel(stored: &Baseline, run: &Baseline) -> Sequel {
 /// Adds the stored ln E to those of the run; returns those that reach the limit, and the number of all.
 fn multiply(
     next: &mut Baseline,
-    before: &BTreeMap<&ChannelId, &Entry>,
+    before: &BTreeMap<&ChannelId, &BaselineEntry>,
     run: &Baseline,
 ) -> (Vec<Drift>, usize) {
     let (mut drifts, mut multiplied) = (Vec::new(), 0);
@@ -290,8 +290,9 @@ fn multiply(
     for entry in next.entries.iter_mut().take(run.entries.len()) {
         let stored = before.get(&entry.id).filter(|stored| stored.case == entry.case);
         let Some(stored) = stored else { continue };
-        for Evidence { check, what, ln_e } in &mut entry.checks {
-            let is_same = |earlier: &&Evidence| earlier.check == *check && earlier.what == *what;
+        for CheckEvidence { check, what, ln_e } in &mut entry.checks {
+            let is_same =
+                |earlier: &&CheckEvidence| earlier.check == *check && earlier.what == *what;
             let Some(earlier) = stored.checks.iter().find(is_same) else { continue };
             *ln_e += earlier.ln_e;
             multiplied += 1;
@@ -306,7 +307,7 @@ fn multiply(
 }
 
 /// Returns the stored entries that the run has not drawn, unless the text of their case has changed.
-fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
+fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<BaselineEntry> {
     let texts: BTreeMap<&str, &str> =
         run.entries.iter().map(|entry| (entry.id.experiment.case.as_str(), &*entry.case)).collect();
     let drawn: BTreeSet<&ChannelId> = run.entries.iter().map(|entry| &entry.id).collect();
@@ -318,25 +319,25 @@ fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
 }
 
 /// Returns the quantities of two entries that can be compared, before and now.
-fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
+fn questions<'e>(before: &BaselineEntry, now: &'e BaselineEntry) -> Vec<ComparedEntry<'e>> {
     if !is_comparable(before, now) {
         return Vec::new();
     }
     let is_sharp = before.is_sharp() && now.is_sharp();
     let variance = before.variance().zip(now.variance()).filter(|_| is_sharp);
     let lookups = before.lookups().zip(now.lookups());
-    let both = [(Quantity::Variance, variance), (Quantity::Lookups, lookups)];
+    let both = [(ComparedQuantity::Variance, variance), (ComparedQuantity::Lookups, lookups)];
     both.into_iter().filter_map(|(quantity, both)| Some((now, quantity, both?))).collect()
 }
 
 /// Entry, compared quantity, and its values before and now.
-type Question<'e> = (&'e Entry, Quantity, (Relative, Relative));
+type ComparedEntry<'e> = (&'e BaselineEntry, ComparedQuantity, (Relative, Relative));
 
 /// Returns a quantity that changed by more than its error.
-fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change> {
+fn answer(&(entry, quantity, (before, now)): &ComparedEntry, z: f64) -> Option<Change> {
     let ratio = now.0 / before.0;
     let error = z * before.1.hypot(now.1) + ROUNDING;
-    let measured = |(value, error): Relative| Measured { value, error: Some(value * error) };
+    let measured = |(value, error): Relative| MeasuredValue { value, error: Some(value * error) };
     let interval = [ratio * (-error).exp(), ratio * error.exp()];
     (ratio.ln().abs() > error).then(|| Change {
         id: entry.id.clone(),
@@ -351,14 +352,14 @@ fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change
 }
 
 /// Returns a time that changed by more than the tolerance, in either direction.
-fn time_change(entry: &Entry, [before, now]: [f64; 2], tolerance: f64) -> Option<Change> {
+fn time_change(entry: &BaselineEntry, [before, now]: [f64; 2], tolerance: f64) -> Option<Change> {
     let ratio = now / before;
     let is_regression = ratio > 1.0 + tolerance;
     (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
         id: entry.id.clone(),
-        quantity: Quantity::Time,
-        before: Measured { value: before, error: None },
-        now: Measured { value: now, error: None },
+        quantity: ComparedQuantity::Time,
+        before: MeasuredValue { value: before, error: None },
+        now: MeasuredValue { value: now, error: None },
         ratio,
         interval: None,
         is_regression,
@@ -371,7 +372,7 @@ const MIN_SECONDS: f64 = 0.1;
 /// Value with its standard error, relative to it.
 type Relative = (f64, f64);
 
-impl Entry {
+impl BaselineEntry {
     fn variance(&self) -> Option<Relative> {
         let (n, kurtosis) = (self.draws as f64, self.kurtosis?);
         let variance = self.variance.filter(|&variance| variance > 0.0)?;
@@ -401,20 +402,20 @@ impl Entry {
 }
 
 /// Returns whether both have the same σ̂: not if it was learned from other pilot rays.
-fn is_comparable(before: &Entry, now: &Entry) -> bool {
+fn is_comparable(before: &BaselineEntry, now: &BaselineEntry) -> bool {
     !now.learns || before.seed == now.seed
 }
 
 /// Returns the quantities of common experiments that are not compared.
-fn left_out(pairs: &[[&Entry; 2]], rules: &Rules) -> LeftOut {
-    let list = |is_out: &dyn Fn(&Entry, &Entry) -> bool| -> Vec<ChannelId> {
+fn left_out(pairs: &[[&BaselineEntry; 2]], rules: &ComparisonLevels) -> LeftOut {
+    let list = |is_out: &dyn Fn(&BaselineEntry, &BaselineEntry) -> bool| -> Vec<ChannelId> {
         let out = pairs.iter().filter(|[before, now]| is_out(before, now));
         out.map(|[_, now]| now.id.clone()).collect()
     };
-    let of_one = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
+    let of_one = |is_out: &dyn Fn(&BaselineEntry, &BaselineEntry) -> bool| {
         list(&|before, now| is_comparable(before, now) && is_out(before, now))
     };
-    let timed = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
+    let timed = |is_out: &dyn Fn(&BaselineEntry, &BaselineEntry) -> bool| {
         list(&|before, now| rules.time_tolerance.is_some() && is_out(before, now))
     };
     LeftOut {
@@ -424,12 +425,12 @@ fn left_out(pairs: &[[&Entry; 2]], rules: &Rules) -> LeftOut {
             has_both && !(before.is_sharp() && now.is_sharp())
         }),
         unpredicted: of_one(&|before, now| {
-            let varies = |entry: &Entry| entry.variance != Some(0.0);
+            let varies = |entry: &BaselineEntry| entry.variance != Some(0.0);
             let has_both = before.variance().is_some() && now.variance().is_some();
             !has_both && (varies(before) || varies(now))
         }),
         uncounted: of_one(&|before, now| {
-            let looks = |entry: &Entry| entry.lookups.is_some_and(|lookups| lookups > 0.0);
+            let looks = |entry: &BaselineEntry| entry.lookups.is_some_and(|lookups| lookups > 0.0);
             let has_both = before.lookups().is_some() && now.lookups().is_some();
             !has_both && (looks(before) || looks(now))
         }),

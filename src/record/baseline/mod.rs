@@ -24,7 +24,10 @@ use crate::record::{Record, Row};
 use media::files;
 
 pub(crate) use compare::Matches;
-pub use compare::{Change, Comparison, Drift, LeftOut, Measured, Quantity, Rules, Sequel, compare};
+pub use compare::{
+    Change, ComparedQuantity, Comparison, ComparisonLevels, Drift, LeftOut, MeasuredValue, Sequel,
+    compare,
+};
 
 /// Version of the file's format.
 pub const SCHEMA: u32 = 1;
@@ -43,7 +46,7 @@ pub struct Baseline {
     /// Seeds of the e-values that are multiplied into the entries.
     pub seeds: Vec<u64>,
     /// The experiments.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<BaselineEntry>,
 }
 
 /// Identity of a channel of an experiment.
@@ -64,7 +67,7 @@ impl Display for ChannelId {
 
 /// One experiment, one channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct BaselineEntry {
     /// Identity of experiment and channel.
     pub id: ChannelId,
     /// A hash of the case's text.
@@ -94,14 +97,14 @@ pub struct Entry {
     /// Number of draws that took this time.
     pub drawn: u64,
     /// ln E of each check, all seeds together.
-    pub checks: Vec<Evidence>,
+    pub checks: Vec<CheckEvidence>,
     /// Command that repeats it.
     pub command: String,
 }
 
 /// The evidence of one check against the experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Evidence {
+pub struct CheckEvidence {
     /// The check.
     pub check: CheckId,
     /// The quantity, as in `the mean`.
@@ -118,7 +121,7 @@ impl Baseline {
         for case in &results.cases {
             let own = cases.iter().find(|own| own.name == case.name);
             let drawn = case.rows().filter(|row| row.experiment.drawn.is_some());
-            entries.extend(drawn.map(|row| Entry::of(&row, results.seed, own)));
+            entries.extend(drawn.map(|row| BaselineEntry::of(&row, results.seed, own)));
         }
         Self {
             schema: SCHEMA,
@@ -193,7 +196,7 @@ pub fn fingerprint() -> Result<String, BaselineError> {
     Ok(format!("{:016x}", add(hash, bytes.len() as u64)))
 }
 
-impl Entry {
+impl BaselineEntry {
     /// Returns whether its numbers can be those of a run.
     fn makes_sense(&self) -> bool {
         let sizes = [self.variance, self.lookups, self.lookups_variance, self.seconds];
@@ -217,7 +220,7 @@ impl Entry {
         let checks = checks.filter_map(|found| {
             let ln_e = found.gate?.ln_e;
             let (check, what) = (found.check, found.what.clone());
-            ln_e.is_finite().then_some(Evidence { check, what, ln_e })
+            ln_e.is_finite().then_some(CheckEvidence { check, what, ln_e })
         });
         Self {
             id: ChannelId { experiment: experiment.id.clone(), channel: row.channel.clone() },

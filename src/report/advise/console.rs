@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::Joined;
+use super::AdviceRow;
 use crate::advise::{Advice, Group, Row, Target};
 use crate::report::fields::{Shown, grid, shown};
 use crate::report::layout::{Paint, Pen, end_elided};
@@ -11,14 +11,14 @@ use numeric::digits::{fixed, percent, short, time};
 use theory::prediction::search::MAX_FACTOR;
 
 /// Columns, each with its rank, before and after the goal.
-const FIRST: &[Shown] = shown!(Joined: "rank_marked", "estimator", "sampling_marked");
-const LAST: &[Shown] = shown!(Joined:
+const FIRST: &[Shown] = shown!(AdviceRow: "rank_marked", "estimator", "sampling_marked");
+const LAST: &[Shown] = shown!(AdviceRow:
     "control" 1, "relative_deviation" 3, "lookups_per_draw" 4, "setup" 7, "draws" 8, "margins" 2, "least_sampling" 6,
     "kurtosis" 7, "needs" 2
 );
 
 /// Columns of the goal: a time, another cost, or an error.
-const GOALS: &[Shown] = shown!(Joined: "time", "cost", "error_percent");
+const GOALS: &[Shown] = shown!(AdviceRow: "time", "cost", "error_percent");
 
 /// Returns the rank, with a mark of a tie.
 pub fn rank(row: &Row) -> String {
@@ -59,7 +59,8 @@ pub fn table(advice: &Advice, pen: Pen) -> String {
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts(advice), pen.width)));
     let mut dropped: Vec<&str> = Vec::new();
     for group in [Group::Ranked, Group::Bounded, Group::Informed] {
-        let rows: Vec<Joined> = super::joined(advice).filter(|of| of.row.group == group).collect();
+        let rows: Vec<AdviceRow> =
+            super::joined(advice).filter(|of| of.row.group == group).collect();
         if rows.is_empty() {
             continue;
         }

@@ -2,7 +2,7 @@
 
 use crate::report::html::template::html;
 
-use super::{Joined, console};
+use super::{AdviceRow, console};
 use crate::advise::Advice;
 use crate::report::ReportError;
 use crate::report::fields::{Shown, shown};
@@ -10,7 +10,7 @@ use crate::report::html::drawing::{definitions, plot};
 use crate::report::html::listing::{page, section};
 
 /// Columns of the page, beside the rank.
-const COLUMNS: &[Shown] = shown!(Joined:
+const COLUMNS: &[Shown] = shown!(AdviceRow:
     "group", "estimator", "sampling", "sampling_factor", "sampling_kind", "control", "cost", "error",
     "relative_deviation", "lookups_per_draw", "margin_below", "margin_above", "least_sampling", "kurtosis",
     "trusted_draws", "needs"
@@ -18,7 +18,7 @@ const COLUMNS: &[Shown] = shown!(Joined:
 
 /// Returns the advice as a page of HTML.
 pub fn text(advice: &Advice) -> Result<String, ReportError> {
-    let rows: Vec<Joined> = super::joined(advice).collect();
+    let rows: Vec<AdviceRow> = super::joined(advice).collect();
     let best = advice.best();
     let line = best.map_or("nothing can be advised".to_owned(), |row| {
         format!("{} with σ\u{302} {}", row.estimator, console::sampling(row))
@@ -31,7 +31,7 @@ pub fn text(advice: &Advice) -> Result<String, ReportError> {
         @if let Some(row) = best { pre { (row.lines) } }
         @for note in console::notes(advice) { p { (note) } }
     };
-    let group = |of: &Joined| of.row.group.word().to_owned();
+    let group = |of: &AdviceRow| of.row.group.word().to_owned();
     let title = "Estimators with their best settings";
     let sections = html! {
         (definitions(&plots))

@@ -16,7 +16,7 @@ use crate::report::{Artifact, ReportError, plots};
 
 /// Row with the advice that it belongs to.
 #[derive(Debug, Clone, Copy)]
-pub struct Joined<'a> {
+pub struct AdviceRow<'a> {
     /// Advice.
     pub advice: &'a Advice,
     /// Row.
@@ -24,7 +24,7 @@ pub struct Joined<'a> {
 }
 
 table! {
-    impl<'a> for Joined<'a> {
+    impl<'a> for AdviceRow<'a> {
         "case": "Case: the name of its file" = |of| &of.advice.case;
         "problem": "Kind of problem" = |of| &of.advice.problem;
         "medium": "Medium" = |of| &of.advice.medium;
@@ -66,23 +66,23 @@ table! {
     }
 }
 
-fn joined(advice: &Advice) -> impl Iterator<Item = Joined<'_>> {
-    advice.rows.iter().map(move |row| Joined { advice, row })
+fn joined(advice: &Advice) -> impl Iterator<Item = AdviceRow<'_>> {
+    advice.rows.iter().map(move |row| AdviceRow { advice, row })
 }
 
 /// Returns the rows as CSV, with a first line of names.
 pub fn csv(advice: &Advice) -> Result<String, ReportError> {
-    fields::csv("the advice", &Joined::of_files(), joined(advice))
+    fields::csv("the advice", &AdviceRow::of_files(), joined(advice))
 }
 
 /// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
 pub fn json(advice: &Advice) -> Result<String, ReportError> {
-    fields::json(&Joined::of_files(), joined(advice))
+    fields::json(&AdviceRow::of_files(), joined(advice))
 }
 
 /// Returns the rows as a JSON object of columns; unknown is `null`.
 pub fn columns(advice: &Advice) -> Result<String, ReportError> {
-    fields::columns(&Joined::of_files(), &joined(advice).collect::<Vec<_>>())
+    fields::columns(&AdviceRow::of_files(), &joined(advice).collect::<Vec<_>>())
 }
 
 /// Returns every file of an advice.

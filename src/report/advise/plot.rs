@@ -1,10 +1,10 @@
 //! `advise.svg` and `advise.png`: time to the error against σ̂, and σ̂ along the ray.
 
-use crate::advise::profile::Profile;
+use crate::advise::profile::SamplingProfile;
 use crate::advise::{Advice, Row, Target};
 use crate::report::ReportError;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
-use crate::report::plots::legend::Entry;
+use crate::report::plots::legend::LegendEntry;
 use crate::report::plots::style::{COLOURS, DARK, Style};
 use crate::report::plots::{Axis, Panel};
 use drawing::Sheet;
@@ -23,10 +23,11 @@ const RANGE: f64 = 100.0;
 pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
     let rows: Vec<&Row> =
         advice.rows.iter().filter(|row| !row.curve.is_empty()).take(SHOWN).collect();
-    let mut entries: Vec<Entry> = rows.iter().enumerate().map(|(i, row)| entry(row, i)).collect();
+    let mut entries: Vec<LegendEntry> =
+        rows.iter().enumerate().map(|(i, row)| entry(row, i)).collect();
     let profile = advice.profiles.first();
     if let Some(profile) = profile {
-        let line = |label: &str, colour| Entry {
+        let line = |label: &str, colour| LegendEntry {
             label: label.to_owned(),
             line: Some((&[], 2.0)),
             marker: None,
@@ -50,12 +51,12 @@ pub fn figure(advice: &Advice) -> Result<Sheet, ReportError> {
     Ok(figure.close(&foot))
 }
 
-fn entry(row: &Row, index: usize) -> Entry {
+fn entry(row: &Row, index: usize) -> LegendEntry {
     let Style { colour, dash, marker } = Style::of(index);
     let control = if row.control.is_empty() { String::new() } else { format!(", {}", row.control) };
     let best = row.constant.map(|x| format!(", σ\u{302} = {}", short(x, 4))).unwrap_or_default();
     let label = format!("{}{control}{best}", row.estimator);
-    Entry { label, line: Some((dash, 2.0)), marker: Some(marker), colour }
+    LegendEntry { label, line: Some((dash, 2.0)), marker: Some(marker), colour }
 }
 
 /// Draws the costs against σ̂.
@@ -83,7 +84,7 @@ fn costs(sheet: &mut Sheet, advice: &Advice, rows: &[&Row]) {
 }
 
 /// Returns the power of ten, and its words, by which the residual is as high as the best σ̂ at most.
-fn scale(profile: &Profile) -> (f64, String) {
+fn scale(profile: &SamplingProfile) -> (f64, String) {
     let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let residual = most(&mut profile.residual.iter().map(|point| point[1]));
     let ratio = most(&mut profile.values.iter().copied()) / residual;

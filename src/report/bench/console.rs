@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::diff;
-use super::tables::Joined;
+use super::tables::BenchEntry;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Conditions};
 use crate::plan::Plan;
 use crate::report::fields::{Shown, grid, shown};
@@ -14,7 +14,7 @@ use crate::report::run::console::views::swept_apart;
 use numeric::digits::{count, counted, fixed, short};
 
 /// Columns, each with its rank.
-const COLUMNS: &[Shown] = shown!(Joined:
+const COLUMNS: &[Shown] = shown!(BenchEntry:
     "estimator", "sampling_marked" 1, "control" 5, "channel" 1, "ns_per_draw" 1, "ns_per_draw_range" 6,
     "draws_per_second" 7, "ns_per_lookup" 4, "seconds_to_1e-2" 3, "seconds_to_1e-3" 2, "seconds_to_1e-4" 3,
     "efficiency" 4, "ttuv" 8, "fom" 5, "speedup" 1, "speedup_range" 6, "scaling" 2
@@ -35,7 +35,8 @@ fn block(text: &mut String, pen: Pen, bench: &Bench, case: &BenchCase) {
     pen.heading(text, &case.name, &case.title);
     let facts = format!("{} · {}", case.problem, case.medium);
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts, pen.width)));
-    let rows: Vec<Joined> = case.rows.iter().map(|row| Joined { bench, case, row }).collect();
+    let rows: Vec<BenchEntry> =
+        case.rows.iter().map(|row| BenchEntry { bench, case, row }).collect();
     let mut grid = grid(&rows, COLUMNS);
     if let Some(head) = swept_apart(case.swept) {
         let digits = case.digits();

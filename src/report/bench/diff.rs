@@ -1,21 +1,21 @@
 //! Changes since a stored bench, in words.
 
 use crate::bench::record::Spread;
-use crate::bench::stored::{Change, Comparison};
+use crate::bench::stored::{BenchComparison, TimeChange};
 use crate::case::id::ExperimentId;
 use crate::report::changes::{Changes, Difference, LeftOut, closing, counts, not_empty};
 use numeric::digits::{fixed, short};
 
 /// Returns the table of changes with its remarks; slower experiments come first.
-pub fn changes(comparison: &Comparison) -> Changes {
+pub fn changes(comparison: &BenchComparison) -> Changes {
     let mut all: Vec<Difference> = comparison.changes.iter().map(difference).collect();
     all.sort_by_key(|change| !change.is_worse);
     Changes { name: comparison.name.clone(), all, remarks: remarks(comparison) }
 }
 
 /// Returns the extent of the comparison, and its conditions.
-fn remarks(comparison: &Comparison) -> Vec<String> {
-    let Comparison { name, tolerance, compared, .. } = comparison;
+fn remarks(comparison: &BenchComparison) -> Vec<String> {
+    let BenchComparison { name, tolerance, compared, .. } = comparison;
     let tolerance = short(*tolerance, 3);
     let mut remarks = vec![format!(
         "baseline {name}: {compared} times per draw compared; a change is one whose rounds do not \
@@ -30,7 +30,7 @@ fn remarks(comparison: &Comparison) -> Vec<String> {
 }
 
 /// Returns the experiments that were left out, by the reason.
-fn left_out(comparison: &Comparison) -> Vec<LeftOut<'_, ExperimentId>> {
+fn left_out(comparison: &BenchComparison) -> Vec<LeftOut<'_, ExperimentId>> {
     not_empty([
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),
@@ -39,12 +39,12 @@ fn left_out(comparison: &Comparison) -> Vec<LeftOut<'_, ExperimentId>> {
 }
 
 /// Returns the reason why nothing was compared; `None` if something was.
-pub fn nothing(comparison: &Comparison) -> Option<String> {
+pub fn nothing(comparison: &BenchComparison) -> Option<String> {
     let is_empty = comparison.is_empty();
     is_empty.then(|| format!("nothing was compared: {}", counts(&left_out(comparison))))
 }
 
-fn difference(change: &Change) -> Difference {
+fn difference(change: &TimeChange) -> Difference {
     let value = |of: Spread| Some((of.median, format!("{} ns", of_rounds(of))));
     let [earlier, later] = change.speedup.map(of_rounds);
     let ratio = fixed(change.ratio, 3);

@@ -3,9 +3,9 @@
 use crate::report::html::template::html;
 
 use super as files;
-use super::tables::Joined;
+use super::tables::BenchEntry;
 use crate::bench::record::Bench;
-use crate::bench::stored::Comparison;
+use crate::bench::stored::BenchComparison;
 use crate::report::ReportError;
 use crate::report::fields::{Shown, shown};
 use crate::report::html as shared;
@@ -14,7 +14,7 @@ use crate::report::html::listing::{page, section};
 use numeric::digits::{count, fixed, time};
 
 /// Columns of the page, beside the case.
-const COLUMNS: &[Shown] = shown!(Joined:
+const COLUMNS: &[Shown] = shown!(BenchEntry:
     "estimator", "sampling", "sampling_kind", "swept", "control", "channel", "ns_per_draw", "ns_per_draw_least",
     "ns_per_draw_most", "ns_per_lookup", "seconds_to_1e-3", "efficiency", "fom", "speedup", "scaling", "reason"
 );
@@ -27,7 +27,7 @@ pub fn text(bench: &Bench) -> Result<String, ReportError> {
         Ok(vec![plot(format!("error-{place}"), label, &files::plot::figure(bench, case)?)])
     });
     let plots: Vec<Vec<Plot>> = plots.collect::<Result<_, ReportError>>()?;
-    let is_worse = bench.comparison.as_ref().is_some_and(Comparison::fails);
+    let is_worse = bench.comparison.as_ref().is_some_and(BenchComparison::fails);
     let timed = rows.iter().filter(|one| one.row.is_first && one.row.times.is_some()).count();
     let line = if is_worse {
         "fail: something became slower than the baseline".to_owned()

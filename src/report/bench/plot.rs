@@ -9,7 +9,7 @@ use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::record::Digits;
 use crate::report::lists::joined;
 use crate::report::plots::figure::{Figure, Foot, LEFT, subject};
-use crate::report::plots::legend::Entry;
+use crate::report::plots::legend::LegendEntry;
 use crate::report::plots::series::{marks, numbered};
 use crate::report::plots::style::Style;
 use crate::report::plots::{self, Axis, Panel};
@@ -23,10 +23,10 @@ const PANEL: [f64; 2] = [490.0, 400.0];
 const PITCH: f64 = 600.0;
 
 /// Dashes, width and colour of a line.
-type Look = (&'static [f64], f64, RGBAColor);
+type LineStyle = (&'static [f64], f64, RGBAColor);
 
 /// Line of the plot.
-struct Series<'a> {
+struct PlotSeries<'a> {
     row: &'a BenchRow,
     times: &'a Times,
     style: Style,
@@ -45,13 +45,13 @@ pub(in crate::report) fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet
         shown.filter_map(|row| row.times.as_ref().map(|times| (row, times))).collect();
     let labels = case.digits();
     let labels = numbered(shown.iter().map(|(row, _)| label(row, labels)).collect());
-    let series: Vec<Series> = shown
+    let series: Vec<PlotSeries> = shown
         .into_iter()
         .zip(labels)
         .enumerate()
-        .map(|(i, ((row, times), label))| Series { row, times, style: Style::of(i), label })
+        .map(|(i, ((row, times), label))| PlotSeries { row, times, style: Style::of(i), label })
         .collect();
-    let entries: Vec<Entry> = series.iter().map(Series::entry).collect();
+    let entries: Vec<LegendEntry> = series.iter().map(PlotSeries::entry).collect();
     let notes = notes(case);
     let foot = Foot { top: TOP + PANEL[1] + 84.0, entries: &entries, notes: &notes };
     let titles = [&*case.title, &subtitle(bench, case)];
@@ -78,11 +78,11 @@ fn label(row: &BenchRow, labels: Digits) -> String {
     format!("{}{marks}", joined(parts, ", "))
 }
 
-impl Series<'_> {
-    fn entry(&self) -> Entry {
+impl PlotSeries<'_> {
+    fn entry(&self) -> LegendEntry {
         let Style { colour, dash, marker } = self.style;
         let line = self.points().any(|point| point.predicted.is_some());
-        Entry {
+        LegendEntry {
             label: self.label.clone(),
             line: line.then_some((dash, 2.0)),
             marker: Some(marker),
@@ -112,7 +112,7 @@ impl Series<'_> {
         sheet: &mut Sheet,
         panel: &Panel,
         price: impl Fn(&CurvePoint) -> f64,
-        look: Look,
+        look: LineStyle,
     ) {
         let line = self.points().filter_map(|point| Some((price(point), point.predicted?)));
         panel.line(sheet, line, look);
@@ -121,8 +121,13 @@ impl Series<'_> {
 
 /// Returns the panel at this place, its axes around everything shown. Of an error bar it shows at most two decades
 /// below the error itself, for a mean may agree with the truth by coincidence.
-fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[Series]) -> Panel {
-    let points = || series.iter().flat_map(Series::points);
+fn panel(
+    place: f64,
+    title: &str,
+    prices: impl Iterator<Item = f64>,
+    series: &[PlotSeries],
+) -> Panel {
+    let points = || series.iter().flat_map(PlotSeries::points);
     let errors = points().flat_map(|p| [p.relative, p.most, p.least.max(p.relative * 1e-2)]);
     let errors = errors.chain(points().filter_map(|point| point.predicted));
     let positive = |x: &f64| *x > 0.0 && x.is_finite();
@@ -131,7 +136,7 @@ fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[S
     Panel::at([LEFT + place * PITCH, TOP], PANEL, x, y)
 }
 
-fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
+fn in_time(sheet: &mut Sheet, series: &[PlotSeries], title: &str) {
     let seconds = series.iter().flat_map(|one| {
         let of = |point: &CurvePoint| {
             [one.times.seconds(point.draws), one.times.plain_seconds(point.draws)]
@@ -141,7 +146,7 @@ fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
     let panel = panel(0.0, title, seconds, series);
     panel.grid(sheet);
     for one in series {
-        let look: Look = (&[], 1.1, one.style.colour.mix(0.5));
+        let look: LineStyle = (&[], 1.1, one.style.colour.mix(0.5));
         one.line(sheet, &panel, |point| one.times.plain_seconds(point.draws), look);
     }
     for one in series {
@@ -150,8 +155,8 @@ fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
     panel.frame(sheet, "(a) Error against time; thin lines: the plain loop");
 }
 
-fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
-    let lookups = series.iter().flat_map(Series::points).map(|point| point.lookups);
+fn in_lookups(sheet: &mut Sheet, series: &[PlotSeries]) {
+    let lookups = series.iter().flat_map(PlotSeries::points).map(|point| point.lookups);
     let panel = panel(1.0, "lookups of σₜ", lookups, series);
     panel.grid(sheet);
     for one in series {

@@ -11,7 +11,7 @@ use numeric::digits::fixed;
 
 /// Row with its case and bench.
 #[derive(Debug, Clone, Copy)]
-pub struct Joined<'a> {
+pub struct BenchEntry<'a> {
     /// Bench.
     pub bench: &'a Bench,
     /// Case.
@@ -20,7 +20,7 @@ pub struct Joined<'a> {
     pub row: &'a BenchRow,
 }
 
-impl Joined<'_> {
+impl BenchEntry<'_> {
     /// Returns a figure of the times.
     fn timed(&self, figure: impl Fn(&Times) -> Option<f64>) -> Option<f64> {
         self.row.times.as_ref().and_then(figure)
@@ -48,7 +48,7 @@ impl Joined<'_> {
 }
 
 table! {
-    impl<'a> for Joined<'a> {
+    impl<'a> for BenchEntry<'a> {
         "case" = |joined| &joined.case.name;
         "problem" = |joined| &joined.case.problem;
         "medium" = |joined| &joined.case.medium;
@@ -100,19 +100,19 @@ table! {
     }
 }
 
-pub(super) fn joined(bench: &Bench) -> impl Iterator<Item = Joined<'_>> {
+pub(super) fn joined(bench: &Bench) -> impl Iterator<Item = BenchEntry<'_>> {
     let cases = bench.cases.iter();
-    cases.flat_map(move |case| case.rows.iter().map(move |row| Joined { bench, case, row }))
+    cases.flat_map(move |case| case.rows.iter().map(move |row| BenchEntry { bench, case, row }))
 }
 
 /// Returns the rows as CSV, with a first line of names.
 pub fn csv(bench: &Bench) -> Result<String, ReportError> {
-    fields::csv("the bench", &Joined::of_files(), joined(bench))
+    fields::csv("the bench", &BenchEntry::of_files(), joined(bench))
 }
 
 /// Returns the rows as a JSON array of objects, one per line; unknown is `null`.
 pub fn json(bench: &Bench) -> Result<String, ReportError> {
-    fields::json(&Joined::of_files(), joined(bench))
+    fields::json(&BenchEntry::of_files(), joined(bench))
 }
 
 /// Point of a curve with its price.

@@ -23,10 +23,10 @@ pub fn csv<T>(
         .map_err(|source| ReportError::Csv { name: name.to_owned(), source })
 }
 
-fn csv_of(names: &[&str], rows: &[Named<Cell>]) -> csv::Result<String> {
+fn csv_of(names: &[&str], rows: &[NamedPairs<Cell>]) -> csv::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(names)?;
-    for Named(cells) in rows {
+    for NamedPairs(cells) in rows {
         writer.write_record(cells.iter().map(|(_, cell)| cell.csv()))?;
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
@@ -35,28 +35,28 @@ fn csv_of(names: &[&str], rows: &[Named<Cell>]) -> csv::Result<String> {
 
 /// Pairs as an object of JSON, in their order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Named<V>(Vec<(&'static str, V)>);
+pub struct NamedPairs<V>(Vec<(&'static str, V)>);
 
-impl<V: Serialize> Serialize for Named<V> {
+impl<V: Serialize> Serialize for NamedPairs<V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
 }
 
 /// Returns a row as an object of JSON.
-pub fn object<T>(fields: &[Field<T>], row: &T) -> Named<Cell> {
+pub fn object<T>(fields: &[Field<T>], row: &T) -> NamedPairs<Cell> {
     let mut cells = Vec::with_capacity(fields.len());
     for field in fields {
         cells.push((field.name, (field.cell)(row)));
     }
-    Named(cells)
+    NamedPairs(cells)
 }
 
 /// Returns rows as objects.
 pub fn objects<T>(
     fields: &[Field<T>],
     rows: impl IntoIterator<Item: Borrow<T>>,
-) -> Vec<Named<Cell>> {
+) -> Vec<NamedPairs<Cell>> {
     let mut objects = Vec::new();
     for row in rows {
         objects.push(object(fields, row.borrow()));
@@ -73,7 +73,7 @@ pub fn json<T>(
     Ok(json_of(&objects(fields, rows))?)
 }
 
-fn json_of(objects: &[Named<Cell>]) -> serde_json::Result<String> {
+fn json_of(objects: &[NamedPairs<Cell>]) -> serde_json::Result<String> {
     let lines: Result<Vec<_>, _> = objects.iter().map(serde_json::to_string).collect();
     let objects = lines?.join(",\n");
     Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
@@ -92,7 +92,7 @@ pub fn columns<T>(fields: &[Field<T>], rows: &[T]) -> Result<String, ReportError
             columns.push((field.name, (first.kind(), values)));
         }
     }
-    Ok(serde_json::to_string(&Named(columns))?)
+    Ok(serde_json::to_string(&NamedPairs(columns))?)
 }
 
 /// Returns a file of rows as CSV.

@@ -5,7 +5,7 @@
 
 use crate::judge::{Judgement, images};
 use crate::record::Verdict;
-use crate::report::junit::{self, Kind, Suite, Test, Trouble};
+use crate::report::junit::{self, ResultKind, Suite, Test, Trouble};
 use crate::report::run::junit::{Inconclusive, trouble_of};
 use numeric::digits::number;
 
@@ -67,7 +67,7 @@ pub fn text(
         name: name.clone(),
         class: Some("judge".to_owned()),
         trouble: Some(Trouble {
-            kind: Kind::Error,
+            kind: ResultKind::Error,
             word: "unreadable",
             message: reason.clone(),
             details: None,

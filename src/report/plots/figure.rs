@@ -1,7 +1,7 @@
 //! Figure: a sheet with its title, and the typeface that measures its words.
 
 use crate::report::ReportError;
-use crate::report::plots::legend::{self, Entry, LINE};
+use crate::report::plots::legend::{self, LINE, LegendEntry};
 use crate::report::plots::style::{DARK, GREY};
 use drawing::font::{InvalidFont, Typeface, fit, wrapped};
 use drawing::sheet::{Align, Sheet};
@@ -27,7 +27,7 @@ pub struct Foot<'a> {
     /// `y` of the sheet at its top.
     pub top: f64,
     /// Series.
-    pub entries: &'a [Entry],
+    pub entries: &'a [LegendEntry],
     /// Notes, each on lines of its own.
     pub notes: &'a [String],
 }

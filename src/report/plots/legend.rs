@@ -15,7 +15,7 @@ const MAX_COLUMNS: usize = 8;
 
 /// Entry of a legend.
 #[derive(Debug, Clone)]
-pub struct Entry {
+pub struct LegendEntry {
     /// Text.
     pub label: String,
     /// Line: dashes and width; `None` for none.
@@ -26,7 +26,7 @@ pub struct Entry {
     pub colour: RGBAColor,
 }
 
-impl Entry {
+impl LegendEntry {
     fn draw(&self, sheet: &mut Sheet, [x, y]: Spot, words: &str) {
         if let Some((dash, width)) = self.line {
             sheet.dashed(vec![[x, y], [x + SAMPLE - 8.0, y]], dash, width, self.colour);
@@ -40,7 +40,7 @@ impl Entry {
 
 /// Returns the number of lines of the legend, and beginning and width of each column: as many columns as fit, each as
 /// wide as its widest entry.
-fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2]>) {
+fn layout(face: &Typeface, entries: &[LegendEntry], width: f64) -> (usize, Vec<[f64; 2]>) {
     let widths: Vec<f64> =
         entries.iter().map(|e| face.width(&e.label, SIZE) + SAMPLE + GAP).collect();
     let columns = |lines: usize| -> Vec<[f64; 2]> {
@@ -63,12 +63,12 @@ fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2
 }
 
 /// Returns the height of a legend of this width.
-pub fn height(face: &Typeface, entries: &[Entry], width: f64) -> f64 {
+pub fn height(face: &Typeface, entries: &[LegendEntry], width: f64) -> f64 {
     if entries.is_empty() { 0.0 } else { layout(face, entries, width).0 as f64 * LINE }
 }
 
 /// Draws the entries in columns, read downwards, with the first line's middle at the place.
-pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry], width: f64) {
+pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[LegendEntry], width: f64) {
     let (lines, columns) = layout(face, entries, width);
     for (i, entry) in entries.iter().enumerate() {
         let Some([begin, wide]) = columns.get(i / lines) else { continue };
@@ -79,7 +79,7 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry],
 
 /// Marker with its meaning, over a panel.
 #[derive(Debug, Clone, Copy)]
-pub struct Key {
+pub struct MarkerKey {
     /// Marker.
     pub marker: Marker,
     /// True if it is hollow.
@@ -89,9 +89,9 @@ pub struct Key {
 }
 
 /// Draws markers with words in one line that ends at the place.
-pub fn keys(face: &Typeface, sheet: &mut Sheet, [right, y]: Spot, keys: &[Key]) {
+pub fn keys(face: &Typeface, sheet: &mut Sheet, [right, y]: Spot, keys: &[MarkerKey]) {
     let mut x = right;
-    for Key { marker, is_hollow, words } in keys.iter().rev() {
+    for MarkerKey { marker, is_hollow, words } in keys.iter().rev() {
         sheet.text([x, y], *words, 12.5, GREY, Align::End);
         x -= face.width(words, 12.5) + 10.0;
         marker.draw(sheet, [x, y], 4.2, GREY);

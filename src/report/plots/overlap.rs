@@ -12,7 +12,7 @@ const SAME: f64 = 1e-9;
 
 /// Line of a panel.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Line {
+pub enum PlotLine {
     /// Line through points, ascending in x.
     Points(Vec<(f64, f64)>),
     /// Constant.
@@ -21,7 +21,7 @@ pub enum Line {
     None,
 }
 
-impl Line {
+impl PlotLine {
     /// Returns whether all of this line lies on another.
     fn lies_on(&self, other: &Self) -> bool {
         let same = |a: f64, b: f64| a == b || (a - b).abs() <= SAME * a.abs().max(b.abs());
@@ -56,7 +56,7 @@ pub struct Class {
 
 /// Returns the classes of equal lines, in the order of drawing: longer ones first, and among equally long ones solid
 /// ones first, so that dashes stay visible where two lines coincide. `dashes` are those of the lines.
-pub fn classes(lines: &[Line], dashes: &[&[f64]]) -> Vec<Class> {
+pub fn classes(lines: &[PlotLine], dashes: &[&[f64]]) -> Vec<Class> {
     let on = |a: usize, b: usize| lines[a].lies_on(&lines[b]);
     let drawn = (0..lines.len()).filter(|&index| lines[index].length() > 0);
     let members = grouped(drawn, |&first, &index| on(index, first) && on(first, index));
@@ -155,8 +155,8 @@ pub fn smallest_step(places: impl Iterator<Item = f64>) -> f64 {
 mod tests {
     use super::*;
 
-    fn through(points: &[(f64, f64)]) -> Line {
-        Line::Points(points.to_vec())
+    fn through(points: &[(f64, f64)]) -> PlotLine {
+        PlotLine::Points(points.to_vec())
     }
 
     #[test]
@@ -166,9 +166,9 @@ mod tests {
             through(&[(2.0, 3.0), (3.0, 4.0 * (1.0 + 1e-12))]),
             through(&[(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)]),
             through(&[(1.0, 2.0), (2.0, 3.0), (3.0, 4.1)]),
-            Line::Level(5.0),
-            Line::None,
-            Line::Level(5.0),
+            PlotLine::Level(5.0),
+            PlotLine::None,
+            PlotLine::Level(5.0),
             through(&[(1.0, 5.0), (2.0, 5.0)]),
         ];
         let solid: [&[f64]; 8] = [&[]; 8];

@@ -1,8 +1,10 @@
 //! Series of a sweep: the rows and the curve that belong together.
 
-use crate::record::{CaseRecord, Compared, Curve, CurvePoint, Digits, Row, Sweep, Verdict};
+use crate::record::{
+    CaseRecord, Compared, CurvePoint, Digits, PredictedCurve, Row, Sweep, Verdict,
+};
 use crate::report::lists::joined;
-use crate::report::plots::legend::Entry;
+use crate::report::plots::legend::LegendEntry;
 use crate::report::plots::style::Style;
 use estimators::Knowledge;
 use numeric::digits::count;
@@ -17,7 +19,7 @@ pub struct Series<'a> {
     /// Rows.
     pub rows: Vec<Row<'a>>,
     /// Predicted curve, if there is one.
-    pub curve: Option<&'a Curve>,
+    pub curve: Option<&'a PredictedCurve>,
 }
 
 impl Series<'_> {
@@ -50,14 +52,14 @@ impl Series<'_> {
     }
 
     /// Returns the entry of the legend: the label, and what the estimator needs.
-    pub fn entry(&self) -> Entry {
+    pub fn entry(&self) -> LegendEntry {
         let Style { colour, dash, marker } = self.style;
         let measured = self.rows.iter().any(|row| row.experiment.draws.is_some());
         let mut needs = self.rows.iter().map(|row| &row.experiment.needs);
         let needs = needs.find(|needs| !needs.is_empty());
         let needs = needs.map_or_else(String::new, |needs| Knowledge::list(needs));
         let marks = marks(&needs, self.setup_lookups(), self.is_fixed());
-        Entry {
+        LegendEntry {
             label: format!("{}{marks}", self.label),
             line: Some((dash, 2.0)),
             marker: measured.then_some(marker),
@@ -84,17 +86,17 @@ pub fn notes(series: &[Series]) -> Vec<String> {
         .collect()
 }
 
-fn is_fixed(rows: &[Row], curve: Option<&Curve>) -> bool {
+fn is_fixed(rows: &[Row], curve: Option<&PredictedCurve>) -> bool {
     curve.is_none() && rows.iter().all(|row| row.experiment.swept().is_none())
 }
 
 /// Rows of one estimator of the case, one channel of its value.
-pub(super) struct Group<'a> {
+pub(super) struct SeriesGroup<'a> {
     /// Number of the estimator.
     listed: usize,
     pub(super) channel: &'a str,
     pub(super) rows: Vec<Row<'a>>,
-    pub(super) curve: Option<&'a Curve>,
+    pub(super) curve: Option<&'a PredictedCurve>,
 }
 
 /// Number of series above which a plot shows only the last channel of each estimator, as the luminance of chromatic
@@ -103,7 +105,7 @@ const CROWD: usize = 12;
 
 /// Returns the series of a case, in the order of its rows; a curve without rows is a series, too.
 pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
-    let mut groups: Vec<Group> = Vec::new();
+    let mut groups: Vec<SeriesGroup> = Vec::new();
     for row in case.rows() {
         group(&mut groups, row.experiment.listed, &row.values.channel).rows.push(row);
     }
@@ -116,7 +118,7 @@ pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
     }
     let labels = labels(&groups, Digits::of(case));
     let series = groups.into_iter().zip(labels).enumerate().map(|(i, (group, label))| {
-        let Group { rows, curve, .. } = group;
+        let SeriesGroup { rows, curve, .. } = group;
         Series { label, style: Style::of(i), rows, curve }
     });
     series.collect()
@@ -124,23 +126,23 @@ pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
 
 /// Returns the group of an estimator and a channel, which is added if it is new.
 fn group<'a, 'b>(
-    groups: &'b mut Vec<Group<'a>>,
+    groups: &'b mut Vec<SeriesGroup<'a>>,
     listed: usize,
     channel: &'a str,
-) -> &'b mut Group<'a> {
+) -> &'b mut SeriesGroup<'a> {
     let found = groups.iter().position(|g| (g.listed, g.channel) == (listed, channel));
     let at = found.unwrap_or_else(|| {
-        groups.push(Group { listed, channel, rows: Vec::new(), curve: None });
+        groups.push(SeriesGroup { listed, channel, rows: Vec::new(), curve: None });
         groups.len() - 1
     });
     &mut groups[at]
 }
 
 /// Joins a refused experiment, which has no channels, to the first channel of others of its estimator.
-fn join_refused(groups: &mut Vec<Group>) {
+fn join_refused(groups: &mut Vec<SeriesGroup>) {
     let mut index = 0;
     while index < groups.len() {
-        let Group { listed, channel, .. } = groups[index];
+        let SeriesGroup { listed, channel, .. } = groups[index];
         let home = groups.iter().position(|g| g.listed == listed && !g.channel.is_empty());
         match home.filter(|_| channel.is_empty()) {
             Some(home) => {
@@ -154,7 +156,7 @@ fn join_refused(groups: &mut Vec<Group>) {
 }
 
 /// Keeps the last channel of each estimator, with the experiments that are refused.
-fn keep_last_channels(groups: &mut Vec<Group>) {
+fn keep_last_channels(groups: &mut Vec<SeriesGroup>) {
     for index in 0..groups.len() {
         let listed = groups[index].listed;
         let last = groups.iter().rposition(|g| g.listed == listed).unwrap_or(index);
@@ -173,8 +175,8 @@ fn keep_last_channels(groups: &mut Vec<Group>) {
 
 /// Returns labels of the series, no two alike: the estimator, its control, its σ̂ if others of its name have another,
 /// and the channel if there are several.
-fn labels(groups: &[Group], digits: Digits) -> Vec<String> {
-    let estimator = |group: &Group| match (group.rows.first(), group.curve) {
+fn labels(groups: &[SeriesGroup], digits: Digits) -> Vec<String> {
+    let estimator = |group: &SeriesGroup| match (group.rows.first(), group.curve) {
         (Some(row), _) => row.experiment.label.clone(),
         (None, Some(curve)) => curve.estimator.clone(),
         (None, None) => String::new(),
@@ -211,7 +213,7 @@ pub fn numbered(texts: Vec<String>) -> Vec<String> {
 }
 
 /// Returns the control, if all rows have the same.
-fn control(group: &Group) -> String {
+fn control(group: &SeriesGroup) -> String {
     let first = group.rows.first().map(|row| &row.experiment.id.control);
     let first = first.or(group.curve.map(|curve| &curve.control));
     let same =
@@ -220,7 +222,7 @@ fn control(group: &Group) -> String {
 }
 
 /// Returns σ̂ in words; empty if it is swept.
-fn sampling(group: &Group, digits: Digits) -> String {
+fn sampling(group: &SeriesGroup, digits: Digits) -> String {
     let drawn = || group.rows.iter().filter(|row| !row.experiment.id.sampling.kind.is_empty());
     if drawn().any(|row| {
         row.experiment.swept().is_some() && row.experiment.swept() == row.experiment.sampling()

@@ -16,7 +16,7 @@ const MAX_COORDINATE: f64 = 1e6;
 
 /// Style of a path.
 #[derive(Clone, PartialEq)]
-enum Look {
+enum PathStyle {
     /// Line of this width, in dashes of these lengths.
     Line(i64, RGBAColor, Vec<i64>),
     /// Filled.
@@ -45,16 +45,16 @@ pub fn view(sheet: &Sheet) -> String {
 
 /// Returns the shapes, for an element with `fill="none"`: text above everything else.
 pub fn shapes(sheet: &Sheet) -> Markup {
-    let mut open: Option<(Look, String)> = None;
+    let mut open: Option<(PathStyle, String)> = None;
     let mut all = Vec::new();
-    let mut add = |look: Look, points: &[Spot]| {
+    let mut add = |look: PathStyle, points: &[Spot]| {
         let is_same = open.as_ref().is_some_and(|(other, _)| *other == look);
         if !is_same {
             all.extend(open.take().map(|(look, way)| path(&look, &way)));
         }
         let (look, all) = open.get_or_insert_with(|| (look, String::new()));
         *all += &way(points.iter().map(|point| point.map(unit)));
-        if matches!(look, Look::Fill(_)) {
+        if matches!(look, PathStyle::Fill(_)) {
             all.push('z');
         }
     };
@@ -63,14 +63,14 @@ pub fn shapes(sheet: &Sheet) -> Markup {
         match shape {
             Shape::Path { points, width, colour, dash } => {
                 let dash = dash.iter().map(|&length| unit(length)).collect();
-                add(Look::Line(unit(*width).max(1), *colour, dash), points);
+                add(PathStyle::Line(unit(*width).max(1), *colour, dash), points);
             }
-            Shape::Area { points, colour } => add(Look::Fill(*colour), points),
+            Shape::Area { points, colour } => add(PathStyle::Fill(*colour), points),
             Shape::Disc { at, radius, colour } => {
-                add(Look::Dots(unit(2.0 * radius), *colour), &[*at]);
+                add(PathStyle::Dots(unit(2.0 * radius), *colour), &[*at]);
             }
             Shape::Image(image) => {
-                image.cells().for_each(|(corners, colour)| add(Look::Fill(colour), &corners));
+                image.cells().for_each(|(corners, colour)| add(PathStyle::Fill(colour), &corners));
             }
             Shape::Text(label) if label.text.is_empty() => {}
             Shape::Text(label) => texts.push(text(label)),
@@ -103,12 +103,12 @@ pub fn way(points: impl IntoIterator<Item = [i64; 2]>) -> String {
     way
 }
 
-fn path(look: &Look, way: &str) -> Markup {
+fn path(look: &PathStyle, way: &str) -> Markup {
     match *look {
-        Look::Fill(colour) => {
+        PathStyle::Fill(colour) => {
             html! { path fill=(hue(colour)) fill-opacity=[part(colour)] d=(way) {} }
         }
-        Look::Line(width, colour, ref dash) => {
+        PathStyle::Line(width, colour, ref dash) => {
             let lengths: Vec<String> = dash.iter().map(i64::to_string).collect();
             let dash = (!dash.is_empty()).then(|| lengths.join(" "));
             html! {
@@ -116,7 +116,7 @@ fn path(look: &Look, way: &str) -> Markup {
                     stroke-dasharray=[dash] d=(way) {}
             }
         }
-        Look::Dots(width, colour) => html! {
+        PathStyle::Dots(width, colour) => html! {
             path stroke=(hue(colour)) stroke-opacity=[part(colour)] stroke-width=(width)
                 stroke-linecap="round" d=(way) {}
         },

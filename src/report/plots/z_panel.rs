@@ -3,7 +3,7 @@
 use plotters::style::RGBAColor;
 
 use crate::record::{Score, Sweep};
-use crate::report::plots::legend::{self, Key};
+use crate::report::plots::legend::{self, MarkerKey};
 use crate::report::plots::overlap::smallest_step;
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{GREY, Marker, PAPER, ink};
@@ -52,8 +52,9 @@ pub fn draw(
     }
     let beyond = points(sheet, &panel, series);
     panel.frame(sheet, "(d) Agreement with theory");
-    let key = |marker, words| Key { marker, is_hollow: false, words };
-    let mut keys: Vec<Key> = SCORES.map(|(score, marker)| key(marker, score.quantity())).into();
+    let key = |marker, words| MarkerKey { marker, is_hollow: false, words };
+    let mut keys: Vec<MarkerKey> =
+        SCORES.map(|(score, marker)| key(marker, score.quantity())).into();
     if beyond {
         keys.push(key(Marker::Up, "beyond"));
     }

@@ -66,21 +66,21 @@ pub fn short(x: f64) -> String {
 
 /// Image with its picture.
 #[derive(Debug, Clone, Copy)]
-pub struct Joined<'a> {
+pub struct PictureImage<'a> {
     /// Picture.
     pub picture: &'a PictureRecord,
     /// Image.
     pub exposure: &'a ExposureRecord,
 }
 
-impl Joined<'_> {
+impl PictureImage<'_> {
     fn found<T>(&self, figure: fn(&Exposure) -> T) -> Option<T> {
         self.exposure.outcome.as_ref().ok().map(figure)
     }
 }
 
 table! {
-    impl<'a> for Joined<'a> {
+    impl<'a> for PictureImage<'a> {
         "picture": "Name of the picture" = |of| &of.picture.name;
         "problem" = |of| &of.picture.problem;
         "medium" = |of| &of.picture.medium;
@@ -108,9 +108,9 @@ table! {
 /// Returns the images of pictures.
 pub fn joined<'a>(
     pictures: impl IntoIterator<Item = &'a PictureRecord>,
-) -> impl Iterator<Item = Joined<'a>> {
+) -> impl Iterator<Item = PictureImage<'a>> {
     let images = |picture: &'a PictureRecord| {
-        picture.exposures.iter().map(move |exposure| Joined { picture, exposure })
+        picture.exposures.iter().map(move |exposure| PictureImage { picture, exposure })
     };
     pictures.into_iter().flat_map(images)
 }
@@ -119,7 +119,7 @@ pub fn joined<'a>(
 pub fn csv<'a>(
     pictures: impl IntoIterator<Item = &'a PictureRecord>,
 ) -> Result<String, ReportError> {
-    fields::csv("gallery.csv", &Joined::fields(), joined(pictures))
+    fields::csv("gallery.csv", &PictureImage::fields(), joined(pictures))
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ const LETTER: f64 = 10.5;
 const LINE: f64 = 15.0;
 
 /// Place of a column of the sheet.
-struct Column {
+struct SheetColumn {
     left: f64,
     top: f64,
     size: [f64; 2],
@@ -60,7 +60,7 @@ pub fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     for number in 0..count {
         let (row, column) = (number / across, number % across);
         let (left, top) = (GAP + column as f64 * step, head + row as f64 * band);
-        let place = Column { left, top, size };
+        let place = SheetColumn { left, top, size };
         match number.checked_sub(1) {
             None => reference(&mut sheet, face, record, &place, room),
             Some(index) => {
@@ -84,10 +84,10 @@ fn reference(
     sheet: &mut Sheet,
     face: &Typeface,
     record: &PictureRecord,
-    place: &Column,
+    place: &SheetColumn,
     room: f64,
 ) {
-    let Column { left, top, size } = *place;
+    let SheetColumn { left, top, size } = *place;
     show(sheet, picture(record, &record.reference.image, [left, top], size));
     legend(sheet, record, place);
     let mut lines = wrapped(face, &format!("reference: {}", record.reference.how), room, 3);
@@ -100,8 +100,8 @@ fn reference(
 }
 
 /// Draws the meaning of the colours of the errors, where the error of the reference would be.
-fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
-    let Column { left, top, size } = *place;
+fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &SheetColumn) {
+    let SheetColumn { left, top, size } = *place;
     let top = top + size[1] + 8.0;
     let (high, low) = (top + 26.0, top + size[1] - size[1].min(120.0) / 8.0);
     let strongest = number(record.strongest);
@@ -122,10 +122,10 @@ fn exposure(
     face: &Typeface,
     record: &PictureRecord,
     exposure: &ExposureRecord,
-    place: &Column,
+    place: &SheetColumn,
     room: f64,
 ) {
-    let Column { left, top, size } = *place;
+    let SheetColumn { left, top, size } = *place;
     match &exposure.outcome {
         Ok(found) => {
             show(sheet, picture(record, &found.image, [left, top], size));
@@ -170,8 +170,8 @@ fn costs(found: &Exposure) -> Vec<String> {
     lines
 }
 
-fn write(sheet: &mut Sheet, place: &Column, lines: &[String]) {
-    let Column { left, top, size } = *place;
+fn write(sheet: &mut Sheet, place: &SheetColumn, lines: &[String]) {
+    let SheetColumn { left, top, size } = *place;
     let first = top + 2.0 * size[1] + 8.0 + 14.0;
     for (i, line) in lines.iter().enumerate() {
         let at = [left, first + LINE * i as f64];

@@ -9,7 +9,7 @@ use plotters::style::{Color, RGBAColor};
 
 use crate::record::{Anatomy, CaseRecord, Record};
 use crate::report::plots::figure::{Figure, LEFT, subject};
-use crate::report::plots::legend::{self, Entry};
+use crate::report::plots::legend::{self, LegendEntry};
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};
 use crate::report::plots::{self, Axis, Panel};
 use crate::report::{Artifact, ReportError};
@@ -51,11 +51,11 @@ fn panel(anatomy: &Anatomy, [top, bottom]: [f64; 2], y: Axis) -> Panel {
 }
 
 /// Curve of the upper panel: name, values, dashes, width, colour.
-type Profile<'a> = (&'static str, &'a [f64], &'static [f64], f64, RGBAColor);
+type AnatomyCurve<'a> = (&'static str, &'a [f64], &'static [f64], f64, RGBAColor);
 
 /// Draws the upper panel: extinctions, explorer points, and collisions of the first walk.
-fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
-    let profiles: [Profile; 4] = [
+fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<LegendEntry> {
+    let profiles: [AnatomyCurve; 4] = [
         ("sampling σ\u{302}", &anatomy.sampling, &[9.0, 4.0], 2.0, COLOURS[2]),
         ("control", &anatomy.control, &[], 2.0, COLOURS[0]),
         ("residual", &anatomy.residual, &[2.5, 3.0], 2.0, COLOURS[1]),
@@ -72,7 +72,7 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
         let points = anatomy.t.iter().copied().zip(values.iter().copied());
         panel.line(sheet, points, (dash, width, colour));
         let (label, line) = (name.to_owned(), Some((dash, width)));
-        entries.insert(0, Entry { label, line, marker: None, colour });
+        entries.insert(0, LegendEntry { label, line, marker: None, colour });
     }
     let dots = [
         ("explorer point", &anatomy.explorers, Marker::Diamond, 5.0, COLOURS[0]),
@@ -89,14 +89,19 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
                 sheet.tip(spot, format!("{name} at t = {t}: {value} per length"));
             }
         }
-        entries.push(Entry { label: name.to_owned(), line: None, marker: Some(marker), colour });
+        entries.push(LegendEntry {
+            label: name.to_owned(),
+            line: None,
+            marker: Some(marker),
+            colour,
+        });
     }
     panel.frame(sheet, "(a) The medium, and the collisions of one flight");
     entries
 }
 
 /// Draws the lower panel: the exact transmittance, the spread of draws about it, and the measured means.
-fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
+fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<LegendEntry> {
     let panel = panel(anatomy, [506.0, 822.0], transmittance_axis(anatomy));
     let blue = COLOURS[6];
     panel.band(sheet, spread(anatomy), blue.mix(0.22));
@@ -124,7 +129,7 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     panel.frame(sheet, "(b) The transmittance and its estimates");
     let entry = |label: &str, line, marker, colour| {
         let label = label.to_owned();
-        Entry { label, line, marker, colour }
+        LegendEntry { label, line, marker, colour }
     };
     let solid = |width| Some((&[] as &[f64], width));
     let mut entries = vec![

@@ -3,10 +3,10 @@
 //! They have results only, without timing, so that the files are the same to the byte for any number of threads on any
 //! machine.
 
-use crate::record::{Anatomy, CaseRecord, Curve, CurvePoint, Record, Sweep};
+use crate::record::{Anatomy, CaseRecord, CurvePoint, PredictedCurve, Record, Sweep};
 use crate::report::fields::{self, Field, Table, fields, place, table};
 use crate::report::run::fields::TIMED;
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use crate::report::{Artifact, ReportError, case_path};
 
 /// Returns the rows, the predicted curves and the profiles of each case.
@@ -27,14 +27,14 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 }
 
 fn case_rows(case: &CaseRecord, seed: u64) -> Result<String, ReportError> {
-    let mut fields = Line::of_files();
+    let mut fields = SummaryRow::of_files();
     fields.retain(|field| !TIMED.contains(&field.name));
     fields.extend(deviations());
-    fields::csv(&case.name, &fields, case.rows().map(|row| Line { row, seed }))
+    fields::csv(&case.name, &fields, case.rows().map(|row| SummaryRow { row, seed }))
 }
 
 /// Returns the fields of error bars, which only these files have.
-pub fn deviations<'a>() -> Vec<Field<Line<'a>>> {
+pub fn deviations<'a>() -> Vec<Field<SummaryRow<'a>>> {
     fields! {
         "variance_deviation": "Standard error of the measured variance" = |line| line.variance_deviation;
         "lookups_deviation": "Standard error of the mean number of lookups" = |line| line.experiment.lookups_deviation;
@@ -43,7 +43,7 @@ pub fn deviations<'a>() -> Vec<Field<Line<'a>>> {
 
 /// Point of a predicted curve.
 pub struct Predicted<'a> {
-    curve: &'a Curve,
+    curve: &'a PredictedCurve,
     point: &'a CurvePoint,
 }
 
@@ -72,19 +72,19 @@ fn theory(case: &CaseRecord, sweep: &Sweep) -> Result<String, ReportError> {
 }
 
 /// Point of the ray of a case.
-pub struct Place<'a> {
+pub struct RayPoint<'a> {
     anatomy: &'a Anatomy,
     number: usize,
 }
 
-impl Place<'_> {
+impl RayPoint<'_> {
     fn of(&self, values: fn(&Anatomy) -> &[f64]) -> Option<f64> {
         values(self.anatomy).get(self.number).copied()
     }
 }
 
 table! {
-    impl<'a> for Place<'a> {
+    impl<'a> for RayPoint<'a> {
         "t": "Distance along the ray" = |place| place.of(|ray| &ray.t);
         "extinction": "Extinction σ_t" = |place| place.of(|ray| &ray.extinction);
         "control": "Control extinction σ_c; empty without one" = |place| place.of(|ray| &ray.control);
@@ -96,6 +96,6 @@ table! {
 }
 
 fn profiles(case: &CaseRecord, anatomy: &Anatomy) -> Result<String, ReportError> {
-    let places = (0..anatomy.t.len()).map(|number| Place { anatomy, number });
-    fields::csv(&case.name, &Place::fields(), places)
+    let places = (0..anatomy.t.len()).map(|number| RayPoint { anatomy, number });
+    fields::csv(&case.name, &RayPoint::fields(), places)
 }

@@ -11,15 +11,15 @@ use std::fmt::Write;
 
 use crate::plan::{Options, Plan};
 use crate::record::{CaseRecord, Digits, Record, Row, Verdict};
-use crate::report::layout::{self, Field, Grid, Paint, end_elided};
+use crate::report::layout::{self, LayoutField, Paint, TableLayout, end_elided};
 use crate::report::lists::grouped;
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use crate::report::run::totals;
 use numeric::digits::{count, counted, fixed, range, short};
 
 /// Subject of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum View {
+pub enum TableView {
     /// Draws and verdicts.
     Run,
     /// Predictions.
@@ -30,7 +30,7 @@ pub enum View {
     Plan,
 }
 
-impl View {
+impl TableView {
     /// Returns whether it shows predictions only.
     pub fn is_theory(self) -> bool {
         matches!(self, Self::Predict | Self::Moments)
@@ -43,7 +43,7 @@ const MIN_WIDTH: usize = 20;
 const WIDE: usize = 120;
 
 /// Returns the table of a record.
-pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
+pub fn table(record: &Record, view: TableView, pen: layout::Pen) -> String {
     let mut text = String::new();
     let mut marks = false;
     for case in &record.results.cases {
@@ -115,16 +115,16 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
         let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
         notes(&mut text, pen, case);
         let (seed, labels) = (record.results.seed, Digits::of(case));
-        marks |= grid(&mut text, pen, &Block { case, rows, labels, seed }, View::Run);
+        marks |= grid(&mut text, pen, &CaseRows { case, rows, labels, seed }, TableView::Run);
     }
     text.push('\n');
     legend(&mut text, pen, marks);
-    closing::write(&mut text, pen, record, View::Run);
+    closing::write(&mut text, pen, record, TableView::Run);
     text
 }
 
 /// Rows of a case that are shown.
-struct Block<'a> {
+struct CaseRows<'a> {
     case: &'a CaseRecord,
     rows: Vec<Row<'a>>,
     labels: Digits,
@@ -143,12 +143,12 @@ fn block(
     text: &mut String,
     pen: layout::Pen,
     case: &CaseRecord,
-    (seed, view): (u64, View),
+    (seed, view): (u64, TableView),
 ) -> bool {
     pen.heading(text, &case.name, &case.title);
-    let shown = Block { case, rows: case.rows().collect(), labels: Digits::of(case), seed };
+    let shown = CaseRows { case, rows: case.rows().collect(), labels: Digits::of(case), seed };
     pen.say(text, Paint::Dim, &facts(&shown, view).join(" · "));
-    if view == View::Plan {
+    if view == TableView::Plan {
         case.facts.iter().for_each(|fact| pen.note(text, fact, ("", Paint::Plain)));
     }
     notes(text, pen, case);
@@ -156,11 +156,11 @@ fn block(
 }
 
 /// Writes the rows with their reasons; returns whether a z is marked.
-fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool {
-    let Block { case, rows, labels, seed } = block;
-    let lines: Vec<Line> = rows.iter().map(|&row| Line { row, seed: *seed }).collect();
+fn grid(text: &mut String, pen: layout::Pen, block: &CaseRows, view: TableView) -> bool {
+    let CaseRows { case, rows, labels, seed } = block;
+    let lines: Vec<SummaryRow> = rows.iter().map(|&row| SummaryRow { row, seed: *seed }).collect();
     let (names, rest) = (views::names(case, rows, *labels), views::columns(&lines, view));
-    if view == View::Moments {
+    if view == TableView::Moments {
         // All columns were asked for: those that do not fit stand in further tables below.
         for grid in layout::blocks(names, rest, pen.width) {
             text.push_str(&grid.render(pen));
@@ -169,13 +169,13 @@ fn grid(text: &mut String, pen: layout::Pen, block: &Block, view: View) -> bool 
         footnotes(text, pen, block, view, 0);
         return false;
     }
-    let mut grid = Grid { columns: names.into_iter().chain(rest).collect() };
+    let mut grid = TableLayout { columns: names.into_iter().chain(rest).collect() };
     grid.fit(pen.width);
     let rest = pen.width.saturating_sub(grid.width() + 2);
     let longest = rows.iter().map(|row| layout::width(&row.reason())).max().unwrap_or(0);
     let beside = pen.width >= WIDE && rest >= MIN_WIDTH && longest > 0;
     if beside {
-        let cells = rows.iter().map(|row| Field::plain(end_elided(&row.reason(), rest)));
+        let cells = rows.iter().map(|row| LayoutField::plain(end_elided(&row.reason(), rest)));
         grid.push("reason", cells.collect());
     }
     text.push_str(&grid.render(pen));
@@ -194,8 +194,8 @@ fn notes(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
 }
 
 /// Returns the facts that all rows share, and the subject of the case.
-fn facts(block: &Block, view: View) -> Vec<String> {
-    let Block { case, rows, .. } = block;
+fn facts(block: &CaseRows, view: TableView) -> Vec<String> {
+    let CaseRows { case, rows, .. } = block;
     let mut facts = vec![case.problem.clone(), case.medium.clone()];
     if let Some(truth) = views::shared(rows, |row| row.truth) {
         facts.push(format!("truth {}", short(truth, 6)));
@@ -206,11 +206,11 @@ fn facts(block: &Block, view: View) -> Vec<String> {
     if let Some(draws) =
         views::shared(rows, |row| row.experiment.draws).filter(|_| !view.is_theory())
     {
-        let what = if view == View::Run { "statistics of " } else { "" };
+        let what = if view == TableView::Run { "statistics of " } else { "" };
         facts.push(format!("{what}{} each", counted(draws, "draw")));
     }
     if let Some(drawn) =
-        views::shared(rows, |row| row.experiment.drawn).filter(|_| view == View::Run)
+        views::shared(rows, |row| row.experiment.drawn).filter(|_| view == TableView::Run)
     {
         facts.push(format!("{} drawn each", count(drawn)));
     }
@@ -218,7 +218,7 @@ fn facts(block: &Block, view: View) -> Vec<String> {
         let shared = counted(case.draws_per_ray, "draw");
         facts.push(format!("FoM with setup lookups shared by {shared}"));
     }
-    if view == View::Run {
+    if view == TableView::Run {
         facts.extend(reach(case));
     }
     facts.retain(|fact| !fact.is_empty());
@@ -241,10 +241,10 @@ fn reach(case: &CaseRecord) -> Vec<String> {
 }
 
 /// Adds the reasons without a place in the table, each once, with its rows.
-fn footnotes(text: &mut String, pen: layout::Pen, block: &Block, view: View, room: usize) {
-    let Block { case, rows, labels, .. } = block;
+fn footnotes(text: &mut String, pen: layout::Pen, block: &CaseRows, view: TableView, room: usize) {
+    let CaseRows { case, rows, labels, .. } = block;
     // Failures follow below the tables.
-    let is_told = |row: &&Row| view == View::Run && row.verdict == Some(Verdict::Fail);
+    let is_told = |row: &&Row| view == TableView::Run && row.verdict == Some(Verdict::Fail);
     let without = |row: &&Row| layout::width(&row.reason()) > room && !is_told(row);
     let notes = grouped(rows.iter().filter(without), |one, other| {
         one.reason() == other.reason() && one.experiment.label == other.experiment.label

@@ -1,7 +1,9 @@
 //! Changes since a stored run, in words that the console and the summaries share.
 
 use crate::record::baseline::LeftOut;
-use crate::record::baseline::{Change, ChannelId, Comparison, Drift, Measured, Quantity, Sequel};
+use crate::record::baseline::{
+    Change, ChannelId, ComparedQuantity, Comparison, Drift, MeasuredValue, Sequel,
+};
 use crate::report::changes::{Changes, Difference, closing, counts, not_empty};
 use crate::report::html::words::evidence;
 use numeric::digits::{fixed, short};
@@ -101,9 +103,9 @@ fn drift(Drift { id, check, what, ln_e, limit, command }: &Drift) -> Difference 
 
 fn change(change: &Change, tolerance: Option<f64>) -> Difference {
     let (quantity, unit) = match change.quantity {
-        Quantity::Variance => ("variance", ""),
-        Quantity::Lookups => ("lookups per draw", ""),
-        Quantity::Time => ("processor time per draw", " ns"),
+        ComparedQuantity::Variance => ("variance", ""),
+        ComparedQuantity::Lookups => ("lookups per draw", ""),
+        ComparedQuantity::Time => ("processor time per draw", " ns"),
     };
     let extent = if let Some([low, high]) = change.interval {
         format!("in [{}, {}]", fixed(low, 4), fixed(high, 4))
@@ -111,7 +113,7 @@ fn change(change: &Change, tolerance: Option<f64>) -> Difference {
         let tolerance = tolerance.map_or("∞".to_owned(), |tolerance| short(tolerance, 3));
         format!("beyond the tolerance of {tolerance}, its error unknown")
     };
-    let value = |Measured { value, error }: Measured| {
+    let value = |MeasuredValue { value, error }: MeasuredValue| {
         let error = error.map_or(String::new(), |error| format!(" ± {}", short(error, 2)));
         Some((value, format!("{}{error}{unit}", fixed(value, 5))))
     };

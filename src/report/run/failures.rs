@@ -5,9 +5,9 @@ use crate::record::{Finding, Record, Row, Verdict};
 use crate::report::fields::{Shown, Table, shown};
 use crate::report::lists::joined;
 use crate::report::run::checks_csv::FindingRow;
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use gate::CheckId;
-use gate::causes::{Pattern, Place};
+use gate::causes::{Pattern, SweepPart};
 
 /// Finding with another verdict than pass, with its row.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +80,7 @@ impl Failure<'_> {
         let Self { row, finding, seed } = *self;
         let known =
             |name: &str, text: String| (!text.is_empty()).then(|| format!("{name}: {text}"));
-        let line = Line { row, seed };
+        let line = SummaryRow { row, seed };
         let finding = finding.map(|found| FindingRow { of: row, found });
         let reason = finding.is_none().then(|| self.reason());
         let stream = row.experiment.stream.map(|stream| stream.to_string());
@@ -104,7 +104,7 @@ const OF_FINDING: &[Shown] = shown!(FindingRow:
 );
 
 /// Fields of its row.
-const OF_ROW: &[Shown] = shown!(Line:
+const OF_ROW: &[Shown] = shown!(SummaryRow:
     "seed", "mean", "standard_error", "truth", "z_mean", "variance", "predicted_variance", "z_variance",
     "lookups_per_draw", "predicted_lookups", "z_lookups"
 );
@@ -150,10 +150,10 @@ pub fn pattern(row: &Row) -> Pattern {
 }
 
 /// Returns the end of a sweep of σ̂ if an estimator fails at that end only, else [`Place::Anywhere`].
-fn place(row: &Row) -> Place {
+fn place(row: &Row) -> SweepPart {
     let swept = row.case.sweep.as_ref().map(|sweep| sweep.what);
     if !matches!(swept, Some(SweptQuantity::Sampling | SweptQuantity::SamplingScale)) {
-        return Place::Anywhere;
+        return SweepPart::Anywhere;
     }
     let is_same = |other: &Row| {
         (other.experiment.listed, &other.channel) == (row.experiment.listed, &row.channel)
@@ -167,8 +167,8 @@ fn place(row: &Row) -> Place {
     // Failing values must be contiguous: exactly one change along the sweep.
     let changes = along.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
     match (along.len() >= MIN_POINTS && changes == 1, along.first()) {
-        (true, Some((_, true))) => Place::LowEnd,
-        (true, Some((_, false))) => Place::HighEnd,
-        _ => Place::Anywhere,
+        (true, Some((_, true))) => SweepPart::LowEnd,
+        (true, Some((_, false))) => SweepPart::HighEnd,
+        _ => SweepPart::Anywhere,
     }
 }

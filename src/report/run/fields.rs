@@ -3,17 +3,17 @@
 
 use crate::record::{Best, Score, Verdict};
 use crate::report::fields::table;
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use estimators::Knowledge;
 use numeric::Grade;
 use numeric::digits::short;
-use theory::prediction::search::Kind;
+use theory::prediction::search::PlaceKind;
 
 /// Fields that differ from run to run, which files of results alone leave out.
 pub const TIMED: [&str; 3] = ["seconds", "ns_per_lookup", "reused"];
 
 table! {
-    impl<'a> for Line<'a> {
+    impl<'a> for SummaryRow<'a> {
         "case": "Case: the name of its file" = |line| &line.case.name;
         "problem": "Kind of problem, as transmittance or rod" = |line| &line.case.problem;
         "medium": "Medium, as in `trueflight list media`" = |line| &line.case.medium;
@@ -118,11 +118,11 @@ table! {
 
 /// Returns the kind of a best σ̂.
 pub fn kind(best: &Best) -> &'static str {
-    if best.kind == Kind::NearLimit { "90 % of the limit" } else { best.kind.words() }
+    if best.kind == PlaceKind::NearLimit { "90 % of the limit" } else { best.kind.words() }
 }
 
 /// Returns the best σ̂, marked if it is a share of a limit; empty if it was not searched.
-fn best_sampling(line: &Line) -> String {
+fn best_sampling(line: &SummaryRow) -> String {
     let text = line.best.as_ref().map(|best| {
         let mark = if best.limit.is_some() { " (90 %)" } else { "" };
         format!("{}{mark}", short(best.sampling, 4))

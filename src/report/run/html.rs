@@ -19,7 +19,7 @@ use crate::record::{CaseRecord, Record};
 use crate::report::fields::Table;
 use crate::report::html as page;
 use crate::report::html::drawing::{self, Plot, plot};
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use crate::report::run::{anatomy_plot, diff, sweep_plot, totals};
 use crate::report::{Artifact, ReportError};
 
@@ -32,7 +32,11 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 pub fn text(record: &Record) -> Result<String, ReportError> {
     let plots = plots(record)?;
     let title = format!("Trueflight: {}", totals::verdict(record).words());
-    let shown = details::Shown { seed: record.results.seed, plots: &plots, fields: Line::fields() };
+    let shown = details::SharedContent {
+        seed: record.results.seed,
+        plots: &plots,
+        fields: SummaryRow::fields(),
+    };
     let body = html! {
         (drawing::definitions(&plots))
         (first::section(record))

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::record::baseline::Comparison;
 use crate::record::{CaseRecord, Record, Row, Verdict};
-use crate::report::junit::{self, Kind, Suite, Test, Trouble};
+use crate::report::junit::{self, ResultKind, Suite, Test, Trouble};
 use crate::report::run::diff;
 use crate::report::run::failures::{self, Failure};
 use numeric::digits::number;
@@ -71,7 +71,7 @@ fn changed(comparison: &Comparison) -> Suite {
     let mut tests = Vec::new();
     if let Some(nothing) = diff::nothing(comparison) {
         let trouble =
-            Trouble { kind: Kind::Error, word: "nothing", message: nothing, details: None };
+            Trouble { kind: ResultKind::Error, word: "nothing", message: nothing, details: None };
         let name = "something was compared".to_owned();
         tests.push(Test { name, trouble: Some(trouble), ..Test::default() });
     } else if !all.iter().any(|change| change.is_worse) {
@@ -80,7 +80,7 @@ fn changed(comparison: &Comparison) -> Suite {
     tests.extend(all.iter().filter(|change| change.is_worse).map(|change| {
         let details = format!("{}\nrepeat: {}\n", change.line(), change.command);
         let trouble = Trouble {
-            kind: Kind::Failure,
+            kind: ResultKind::Failure,
             word: "regression",
             message: change.what(),
             details: Some(details),
@@ -112,9 +112,9 @@ pub fn trouble_of(
 ) -> Option<Trouble> {
     let kind = match (verdict, inconclusive) {
         (Verdict::Pass, _) => return None,
-        (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => Kind::Failure,
-        (Verdict::Inconclusive, Inconclusive::Error) => Kind::Error,
-        _ => Kind::Skipped,
+        (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => ResultKind::Failure,
+        (Verdict::Inconclusive, Inconclusive::Error) => ResultKind::Error,
+        _ => ResultKind::Skipped,
     };
     let is_told = matches!(verdict, Verdict::Fail | Verdict::Inconclusive);
     let (word, message) = (verdict.word(), reason.to_owned());

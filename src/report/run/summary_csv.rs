@@ -11,14 +11,14 @@ use crate::report::{Artifact, ReportError};
 
 /// Row of a record with the seed of the run; it dereferences to the row.
 #[derive(Debug, Clone, Copy)]
-pub struct Line<'a> {
+pub struct SummaryRow<'a> {
     /// Row.
     pub row: Row<'a>,
     /// Seed of the run.
     pub seed: u64,
 }
 
-impl<'a> Deref for Line<'a> {
+impl<'a> Deref for SummaryRow<'a> {
     type Target = Row<'a>;
 
     fn deref(&self) -> &Row<'a> {
@@ -27,14 +27,14 @@ impl<'a> Deref for Line<'a> {
 }
 
 /// Returns all rows of a record.
-pub fn lines(record: &Record) -> impl Iterator<Item = Line<'_>> {
+pub fn lines(record: &Record) -> impl Iterator<Item = SummaryRow<'_>> {
     let seed = record.results.seed;
-    record.results.rows().map(move |row| Line { row, seed })
+    record.results.rows().map(move |row| SummaryRow { row, seed })
 }
 
 /// Returns the rows of a record as CSV, with a first line of names.
 pub fn csv(record: &Record) -> Result<String, ReportError> {
-    fields::csv("the rows", &Line::of_files(), lines(record))
+    fields::csv("the rows", &SummaryRow::of_files(), lines(record))
 }
 
 /// Returns the rows of a record as a JSON array of objects, one per line. The names are the columns of the CSV, and
@@ -48,11 +48,11 @@ pub fn columns(record: &Record) -> Result<String, ReportError> {
     fields::columns(&with_lists(), &lines(record).collect::<Vec<_>>())
 }
 
-fn with_lists<'a>() -> Vec<Field<Line<'a>>> {
-    let lists: Vec<Field<Line>> = fields! {
+fn with_lists<'a>() -> Vec<Field<SummaryRow<'a>>> {
+    let lists: Vec<Field<SummaryRow>> = fields! {
         "lookups_pmf": "Probabilities of 0, 1, … lookups" = |line| &line.experiment.lookups_pmf;
     };
-    Line::of_files().into_iter().chain(lists).collect()
+    SummaryRow::of_files().into_iter().chain(lists).collect()
 }
 
 /// Returns the file with one row for each experiment and channel.

@@ -12,7 +12,7 @@ use crate::report::plots::series::{self, Series, collect, only_channel};
 use crate::report::plots::{self, Axis, Panel, z_panel};
 use crate::report::{Artifact, ReportError};
 use drawing::Sheet;
-use graph::{Graph, Quantity};
+use graph::{Graph, PanelQuantity};
 use numeric::digits::{count, counted, short};
 
 const WIDTH: f64 = 1200.0;
@@ -32,14 +32,14 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(artifacts)
 }
 
-const VARIANCE_AND_COST: [Quantity; 2] = [
-    Quantity {
+const VARIANCE_AND_COST: [PanelQuantity; 2] = [
+    PanelQuantity {
         head: "(a) Variance of one draw",
         title: "variance V",
         values: |row| row.compared(Score::Variance),
         theory: |point| point.variance,
     },
-    Quantity {
+    PanelQuantity {
         head: "(b) Cost",
         title: "lookups per draw N",
         values: |row| row.compared(Score::Lookups),
@@ -52,14 +52,14 @@ const fn plain(measured: Option<f64>, theory: Option<f64>) -> Compared {
     Compared { measured, deviation: None, theory, z: None }
 }
 
-const EFFICIENCY: Quantity = Quantity {
+const EFFICIENCY: PanelQuantity = PanelQuantity {
     head: "(c) Efficiency",
     title: "figure of merit 1/(V·N)",
     values: |row| plain(row.fom, row.predicted_fom),
     theory: |point| point.fom,
 };
 
-const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
+const LOOKUPS_TO_UNIT_VARIANCE: PanelQuantity = PanelQuantity {
     head: "(c) Lookups to unit variance",
     title: "LTUV = V·N",
     values: |row| plain(row.fom.map(f64::recip), row.predicted_fom.map(f64::recip)),
@@ -74,9 +74,9 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     let has_setup = series.iter().any(|one| one.setup_lookups().is_some());
     let efficiency = match (of_medium, has_setup) {
         (true, false) => LOOKUPS_TO_UNIT_VARIANCE,
-        (true, true) => Quantity { title: "LTUV = V·(N + S/n)", ..LOOKUPS_TO_UNIT_VARIANCE },
+        (true, true) => PanelQuantity { title: "LTUV = V·(N + S/n)", ..LOOKUPS_TO_UNIT_VARIANCE },
         (false, false) => EFFICIENCY,
-        (false, true) => Quantity { title: "figure of merit 1/(V·(N + S/n))", ..EFFICIENCY },
+        (false, true) => PanelQuantity { title: "figure of merit 1/(V·(N + S/n))", ..EFFICIENCY },
     };
     let quantities = [VARIANCE_AND_COST[0], VARIANCE_AND_COST[1], efficiency];
     let graph =
@@ -172,7 +172,7 @@ fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
 
 /// Returns a range with every measured point, and with predictions within four decades of them: the predicted variance
 /// of some estimators has a pole.
-fn y_axis(quantity: &Quantity, series: &[Series]) -> Axis {
+fn y_axis(quantity: &PanelQuantity, series: &[Series]) -> Axis {
     let rows = || series.iter().flat_map(|one| &one.rows);
     let positive = |value: &f64| *value > 0.0 && value.is_finite();
     let mut shown: Vec<f64> =

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::{ANY, asked, request};
-use trueflight::advise::{Costs, Request, Row};
+use trueflight::advise::{AdviceRequest, Costs, Row};
 use trueflight::report::plots::axis::Axis;
 use trueflight::report::plots::figure::{Figure, Foot, LEFT};
-use trueflight::report::plots::legend::Entry;
+use trueflight::report::plots::legend::LegendEntry;
 use trueflight::report::plots::panel::Panel;
 use trueflight::report::plots::style::COLOURS;
 use trueflight::report::plots::svg;
@@ -81,7 +81,7 @@ fn the_map_of_winners_is_drawn() {
                 let head = "title = \"map\"\n[problem.transmittance]";
                 let text = format!("{head}\n{medium}\nspan = [0, 4]\n{ANY}");
                 let costs = Costs::Given { draw, lookup };
-                let advice = asked(&text, &Request { looseness, ..request(costs) });
+                let advice = asked(&text, &AdviceRequest { looseness, ..request(costs) });
                 for row in advice.rows.iter().take(8) {
                     let sampling = row.constant.or(row.factor).unwrap_or(1.0);
                     let (name, rank, time, deviation) =
@@ -112,13 +112,13 @@ fn drawn(cells: &[(String, f64)]) -> String {
         let place = names.iter().position(|other| *other == name).unwrap_or(0);
         COLOURS[place % COLOURS.len()]
     };
-    let entry = |name: &&str| Entry {
+    let entry = |name: &&str| LegendEntry {
         label: (*name).to_owned(),
         line: Some((&[], 9.0)),
         marker: None,
         colour: colour(name),
     };
-    let entries: Vec<Entry> = names.iter().map(entry).collect();
+    let entries: Vec<LegendEntry> = names.iter().map(entry).collect();
     let notes = ["24 irregular spikes on a line, from nearly homogeneous (× max/mean) to thin layers. A draw costs 20 ns. Estimators that \
          need a majorant have one that exceeds the maximum by the given factor."
         .to_owned()];

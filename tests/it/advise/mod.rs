@@ -8,11 +8,11 @@ use std::path::PathBuf;
 
 use crate::common::place::{Place, assert_says};
 use crate::common::{case, differs, failing, none, rows, source};
-use trueflight::advise::{Advice, CURVES, Costs, Group, Request, Row, Target, advise};
+use trueflight::advise::{Advice, AdviceRequest, CURVES, Costs, Group, Row, Target, advise};
 use trueflight::case::Spec;
 use trueflight::case::sweep::SweptQuantity;
 use trueflight::catalogue::own_pages;
-use trueflight::theory::prediction::search::Kind;
+use trueflight::theory::prediction::search::PlaceKind;
 
 const LINE: &str = "title = \"a line\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\nspan = [0, 4]\n";
 pub(super) const SINES: &str = "title = \"waves\"\n[problem.transmittance]\n\
@@ -21,13 +21,13 @@ const GRID: &str = "title = \"a grid\"\n[problem.transmittance]\nvolume.grid = {
     bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }\n";
 pub(super) const ANY: &str = "estimators = [\"ratio\"]\nsampling = 1\n";
 
-pub(super) fn asked(text: &str, request: &Request) -> Advice {
+pub(super) fn asked(text: &str, request: &AdviceRequest) -> Advice {
     let spec = Spec::parse(&source("advised", text), &own_pages::NONE).expect("TOML");
     advise(&spec, request).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
-pub(super) fn request(costs: Costs) -> Request {
-    Request {
+pub(super) fn request(costs: Costs) -> AdviceRequest {
+    AdviceRequest {
         target: Target::Error(0.01),
         costs,
         rays: None,
@@ -56,7 +56,7 @@ fn a_homogeneous_line_has_the_best_rows_of_closed_forms() {
     assert_eq!((woodcock.constant, woodcock.least.map(|x| x > 0.49)), (Some(0.5), Some(true)));
     // Ratio tracking falls towards τ² for each lookup.
     let ratio = row(&advice, "ratio");
-    assert_eq!(ratio.kind, Kind::NearLimit);
+    assert_eq!(ratio.kind, PlaceKind::NearLimit);
     let over = ratio.time / (4.0 * 1e4);
     assert!((1.049..1.0501).contains(&over), "{over}");
     assert_eq!(ratio.least, Some(0.0));
@@ -105,7 +105,7 @@ fn lines_for_a_case_reproduce_the_rows_and_their_draws_pass() {
     assert_eq!(shown.len(), CURVES);
     for row in shown {
         let least = row.curve.iter().map(|[_, y]| *y).fold(f64::INFINITY, f64::min);
-        let above = if row.kind == Kind::NearLimit { 1.0501 } else { 1.001 };
+        let above = if row.kind == PlaceKind::NearLimit { 1.0501 } else { 1.001 };
         assert!(row.time <= least * above, "{} {} {least}", row.lines, row.time);
     }
 }
@@ -151,11 +151,13 @@ fn costs_decide_the_ranking() {
     let ratio = |advice| row(advice, "ratio").constant.expect("a constant");
     // Where lookups cost little, many of them are worth their price.
     assert!(ratio(&cheap) > 2.0 * ratio(&dear), "{} {}", ratio(&cheap), ratio(&dear));
-    let budget = Request { target: Target::Budget(1e6), ..request(Costs::Lookups) };
+    let budget = AdviceRequest { target: Target::Budget(1e6), ..request(Costs::Lookups) };
     let found = asked(&text, &budget);
     let best = found.best().expect("advice");
-    let again =
-        asked(&text, &Request { target: Target::Error(best.error), ..request(Costs::Lookups) });
+    let again = asked(
+        &text,
+        &AdviceRequest { target: Target::Error(best.error), ..request(Costs::Lookups) },
+    );
     // Settings are searched to a thousandth.
     let cost = again.best().expect("advice").time;
     none(&differs("budget", cost, 1e6, 1e-3).into_iter().collect::<Vec<_>>());
@@ -166,7 +168,7 @@ fn a_loose_majorant_costs_those_that_need_it() {
     let text = format!("{SINES}{ANY}");
     let costs = || request(Costs::Given { draw: 5e-8, lookup: 1e-8 });
     let [tight, loose] =
-        [1.0, 2.0].map(|looseness| asked(&text, &Request { looseness, ..costs() }));
+        [1.0, 2.0].map(|looseness| asked(&text, &AdviceRequest { looseness, ..costs() }));
     let [one, two] = [&tight, &loose].map(|advice| row(advice, "woodcock"));
     assert_eq!(two.constant, one.constant.map(|x| 2.0 * x));
     none(

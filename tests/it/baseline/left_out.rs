@@ -3,15 +3,15 @@
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::record::baseline::LeftOut;
-use trueflight::record::baseline::{Baseline, ChannelId, Entry};
-use trueflight::record::baseline::{Rules, compare};
+use trueflight::record::baseline::{Baseline, BaselineEntry, ChannelId};
+use trueflight::record::baseline::{ComparisonLevels, compare};
 use trueflight::report::run::diff;
 
 use super::{CASE, RULES, baseline, said, usual};
 use crate::common::place::Place;
 
 /// Change that spoils an entry.
-type Doctor = fn(&mut Entry);
+type Doctor = fn(&mut BaselineEntry);
 /// List of entries that are left out for that reason.
 type List = fn(&LeftOut) -> &Vec<ChannelId>;
 
@@ -81,7 +81,7 @@ fn times_that_were_asked_for_and_not_compared_are_an_error() {
 #[test]
 fn what_is_left_out_is_said_with_its_reason() {
     let (mut stored, mut run) = (baseline(1), baseline(2));
-    let rules = Rules { time_tolerance: Some(0.25), ..RULES };
+    let rules = ComparisonLevels { time_tolerance: Some(0.25), ..RULES };
     for entry in stored.entries.iter_mut().chain(&mut run.entries) {
         entry.seconds = Some(1.0);
     }

@@ -5,7 +5,7 @@ mod left_out;
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::draw::run;
 use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
@@ -14,8 +14,10 @@ use trueflight::plan::Amount;
 use trueflight::plan::Options;
 use trueflight::plan::Plan;
 use trueflight::record::Record;
-use trueflight::record::baseline::{Baseline, BaselineError, Entry};
-use trueflight::record::baseline::{Comparison, Quantity, Rules, Sequel, compare};
+use trueflight::record::baseline::{Baseline, BaselineEntry, BaselineError};
+use trueflight::record::baseline::{
+    ComparedQuantity, Comparison, ComparisonLevels, Sequel, compare,
+};
 use trueflight::record::build;
 use trueflight::rng::Streams;
 
@@ -30,10 +32,10 @@ sampling.constant.value = 1
 estimators = [{ woodcock = {} }, { ratio = {} }]
 ";
 
-const RULES: Rules = Rules { alpha: 1e-3, time_tolerance: None };
+const RULES: ComparisonLevels = ComparisonLevels { alpha: 1e-3, time_tolerance: None };
 
 fn case() -> Case {
-    let source = Source { name: "case".into(), path: "case.toml".into(), text: CASE.into() };
+    let source = CaseText { name: "case".into(), path: "case.toml".into(), text: CASE.into() };
     Case::read(&source).expect("no mistakes")
 }
 
@@ -60,7 +62,7 @@ impl Experiment for Biased {
     }
 }
 
-fn quantities(comparison: &Comparison) -> Vec<(Quantity, bool)> {
+fn quantities(comparison: &Comparison) -> Vec<(ComparedQuantity, bool)> {
     comparison.changes.iter().map(|change| (change.quantity, change.is_regression)).collect()
 }
 
@@ -94,7 +96,10 @@ fn doctored_baselines_are_flagged_and_equal_runs_are_not() {
     better.entries[0].lookups = better.entries[0].lookups.map(|n| 0.9 * n);
     let (comparison, _) = compare("main", &better, &run, &RULES);
     assert!(comparison.fails());
-    assert_eq!(quantities(&comparison), [(Quantity::Lookups, true), (Quantity::Variance, true)]);
+    assert_eq!(
+        quantities(&comparison),
+        [(ComparedQuantity::Lookups, true), (ComparedQuantity::Variance, true)]
+    );
     let change = &comparison.changes[1];
     let [low, high] = change.interval.expect("an interval");
     assert!(low > 1.8 && low < change.ratio && change.ratio < high && high < 2.2, "{change:?}");
@@ -104,7 +109,7 @@ fn doctored_baselines_are_flagged_and_equal_runs_are_not() {
     worse.entries[1].variance = worse.entries[1].variance.map(|v| 2.0 * v);
     let (comparison, _) = compare("main", &worse, &run, &RULES);
     assert!(!comparison.fails());
-    assert_eq!(quantities(&comparison), [(Quantity::Variance, false)]);
+    assert_eq!(quantities(&comparison), [(ComparedQuantity::Variance, false)]);
 }
 
 #[test]
@@ -116,9 +121,10 @@ fn a_time_fails_beyond_its_tolerance_only() {
         stored.entries[0].seconds = Some(before);
         run.entries[0].seconds = Some(now);
         run.entries[0].drawn = stored.entries[0].drawn;
-        let rules = Rules { time_tolerance: Some(0.25), ..RULES };
+        let rules = ComparisonLevels { time_tolerance: Some(0.25), ..RULES };
         let (comparison, _) = compare("main", &stored, &run, &rules);
-        let times = comparison.changes.iter().filter(|change| change.quantity == Quantity::Time);
+        let times =
+            comparison.changes.iter().filter(|change| change.quantity == ComparedQuantity::Time);
         let of_first = times.filter(|change| change.id == run.entries[0].id);
         let found: Vec<bool> = of_first.map(|change| change.is_regression).collect();
         assert_eq!(found, expected.into_iter().collect::<Vec<_>>(), "{before} {now}");
@@ -156,10 +162,10 @@ fn variances_without_a_normal_law_are_not_compared() {
     let all = compared(&stored);
     let n = stored.entries[1].draws as f64;
     for doctor in [
-        |entry: &mut Entry, n: f64| entry.eighth_moment_ratio = Some(0.02 * n),
-        |entry: &mut Entry, n: f64| entry.rare_event_size = Some(0.2 * n),
-        |entry: &mut Entry, n: f64| entry.kurtosis = Some(1.0 + 50.0 / n),
-        |entry: &mut Entry, n: f64| entry.kurtosis = Some(1.0 + 0.02 * n),
+        |entry: &mut BaselineEntry, n: f64| entry.eighth_moment_ratio = Some(0.02 * n),
+        |entry: &mut BaselineEntry, n: f64| entry.rare_event_size = Some(0.2 * n),
+        |entry: &mut BaselineEntry, n: f64| entry.kurtosis = Some(1.0 + 50.0 / n),
+        |entry: &mut BaselineEntry, n: f64| entry.kurtosis = Some(1.0 + 0.02 * n),
     ] {
         let honest = stored.entries[1].clone();
         doctor(&mut stored.entries[1], n);

@@ -4,14 +4,14 @@
 
 use std::io::Write;
 
-use trueflight::media::grid_file::{Choice, MAX_SAMPLES, Samples, Unreadable, read};
+use trueflight::media::grid_file::{GridChoice, MAX_SAMPLES, Samples, Unreadable, read};
 
 /// Reads bytes as a grid of the given ending; asserts that any result is a grid.
 pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     let suffix = format!(".{ending}");
     let mut file = tempfile::Builder::new().suffix(&suffix).tempfile().expect("a file");
     file.write_all(bytes).expect("written");
-    match read(file.path(), &Choice::default()) {
+    match read(file.path(), &GridChoice::default()) {
         Ok(samples) => {
             let count = samples.size.iter().product::<usize>();
             assert!(count > 0 && count as u64 <= MAX_SAMPLES);

@@ -12,7 +12,7 @@ use trueflight::gate::CheckId;
 
 use trueflight::case::Case;
 use trueflight::case::CaseError;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::catalogue::{Fault, Settings};
 use trueflight::draw::run;
 use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
@@ -29,8 +29,8 @@ use trueflight::rng::Streams;
 pub const ALPHA: f64 = 1e-6;
 
 /// Makes a case of the given name and text.
-pub fn source(name: &str, text: &str) -> Source {
-    Source { name: name.into(), path: PathBuf::from(format!("{name}.toml")), text: text.into() }
+pub fn source(name: &str, text: &str) -> CaseText {
+    CaseText { name: name.into(), path: PathBuf::from(format!("{name}.toml")), text: text.into() }
 }
 
 /// Reads a case; panics with the rendered mistakes.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use trueflight::case::Case;
 use trueflight::case::CaseError;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 
 /// Values that replace a number.
 const ODD: [&str; 24] = [
@@ -180,7 +180,7 @@ fn lines(
 /// Reads a case; asserts that a broken one is refused with line, place and cure of every mistake.
 pub fn reads_or_names_the_place(text: &str) -> Option<Case> {
     let path = PathBuf::from("cases/transmittance/broken.toml");
-    let source = Source { name: "broken".into(), path, text: text.to_owned() };
+    let source = CaseText { name: "broken".into(), path, text: text.to_owned() };
     let error = match Case::read(&source) {
         Ok(case) => return Some(case),
         Err(error) => error,

@@ -7,7 +7,7 @@ use trueflight::plan::Plan;
 use trueflight::record::Row;
 use trueflight::record::build;
 use trueflight::report::layout::Pen;
-use trueflight::report::run::console::{self, View};
+use trueflight::report::run::console::{self, TableView};
 use trueflight::report::run::summary_csv as tables;
 
 /// Returns the central ray of Eq. 21, with more keys of the case and its estimators.
@@ -152,7 +152,7 @@ fn what_no_lookup_pays_for_has_a_name() {
         [Case::read(&source("needs", &eq21("", "sampling.constant.value = 0.7", estimators)))
             .expect("a case")];
     let record = build::predicted(&Plan::new(&cases, &options(1, 1000)));
-    let table = console::table(&record, View::Predict, Pen { width: 120, colour: false });
+    let table = console::table(&record, TableView::Predict, Pen { width: 120, colour: false });
     let line = |name: &str| table.lines().find(|line| line.starts_with(name)).expect("a line");
     assert!(table.contains("needs") && line("closed-form").contains('τ'), "{table}");
     assert!(!line("ratio").contains('τ'), "{table}");

@@ -8,7 +8,7 @@ use trueflight::plan::Plan;
 use trueflight::record::build;
 use trueflight::record::{Record, Row};
 use trueflight::report::layout::{self, Pen};
-use trueflight::report::run::console::{self, View};
+use trueflight::report::run::console::{self, TableView};
 use trueflight::report::run::sweep_plot;
 use trueflight::theory::prediction::search::Kind;
 
@@ -159,7 +159,7 @@ fn tables_say_what_the_best_is_however_narrow() {
     let text = line("sampling.constant.value = 50", "{ ratio = {} }, { woodcock = {} }");
     let limit = 1.0 / ((-4f64).exp() * 4.0);
     for width in [60, 80, 100, 120, 200] {
-        for view in [View::Predict, View::Moments] {
+        for view in [TableView::Predict, TableView::Moments] {
             let table = console::table(&record(&text), view, Pen { width, colour: false });
             assert!(table.lines().all(|line| layout::width(line) <= width), "{table}");
             let one_line = table.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -3,20 +3,20 @@
 use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::Catalogue;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::export::truth::Truth;
 use trueflight::export::{ExportError, ExportOptions, Target, export_with};
 
 use super::source;
 
 /// Makes a case of a text.
-fn written(text: &str) -> Source {
-    Source { name: "own".into(), path: "own.toml".into(), text: text.to_owned() }
+fn written(text: &str) -> CaseText {
+    CaseText { name: "own".into(), path: "own.toml".into(), text: text.to_owned() }
 }
 
 /// Exports a case; returns its folder and its truth.
 fn exported(
-    source: &Source,
+    source: &CaseText,
     target: Target,
     wishes: &ExportOptions,
 ) -> Result<(TempDir, Truth), ExportError> {
@@ -29,7 +29,7 @@ fn text(folder: &TempDir, name: &str) -> String {
     std::fs::read_to_string(folder.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-fn refused(source: &Source, target: Target, wishes: &ExportOptions) -> String {
+fn refused(source: &CaseText, target: Target, wishes: &ExportOptions) -> String {
     match exported(source, target, wishes) {
         Ok((_, truth)) => panic!("{} was exported", truth.case),
         Err(error) => error.to_string(),
@@ -41,7 +41,7 @@ fn channels(list: &[usize]) -> ExportOptions {
 }
 
 /// Returns the cube of the field: `T = exp(−2 σ_t)`, `σ_t` = ½, 1, 2.
-fn cube() -> Source {
+fn cube() -> CaseText {
     written(include_str!("../../data/field/03-coloured-media/three.toml"))
 }
 

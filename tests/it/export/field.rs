@@ -1,7 +1,7 @@
 //! The truth is that of the samples, by arithmetic of the test itself.
 
 use trueflight::export::Target;
-use trueflight::media::grid_file::{self, Choice};
+use trueflight::media::grid_file::{self, GridChoice};
 
 use super::{Scene, scene};
 
@@ -158,7 +158,7 @@ fn a_field_file_is_read_back_as_it_was_written() {
     let scene =
         scene("transmittance/grid-trilinear-centres", Target::Mitsuba, None).expect("exported");
     let vol = Vol::read(&scene, false);
-    let read = grid_file::read(&scene.path("density.vol"), &Choice::default()).expect("a grid");
+    let read = grid_file::read(&scene.path("density.vol"), &GridChoice::default()).expect("a grid");
     assert_eq!(read.size, [8, 6, 5], "a grid keeps its own samples");
     assert_eq!(read.size, vol.size);
     assert!(read.values.iter().zip(&vol.values).all(|(read, own)| *read == f64::from(*own)));

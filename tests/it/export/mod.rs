@@ -10,12 +10,12 @@ use std::path::PathBuf;
 
 use crate::common::case_file;
 use tempfile::TempDir;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::export::{self, ExportError, Exported, Target};
 
 /// Returns a case of the repository.
-fn source(name: &str) -> Source {
-    Source::read(&case_file(name)).expect("a case")
+fn source(name: &str) -> CaseText {
+    CaseText::read(&case_file(name)).expect("a case")
 }
 
 /// Exported case and its folder.

@@ -3,7 +3,7 @@
 use quick_xml::events::Event;
 use serde_json::Value;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::export::Target;
 use trueflight::export::truth::Truth;
 
@@ -67,7 +67,7 @@ fn every_kind_is_exported_whole() {
 fn the_case_beside_a_scene_is_a_case_with_its_truth() {
     for case in CASES {
         let scene = scene(case, Target::Mitsuba, None).expect("exported");
-        let read = Case::read(&Source::read(&scene.path("case.toml")).expect("a text"));
+        let read = Case::read(&CaseText::read(&scene.path("case.toml")).expect("a text"));
         let read = read.unwrap_or_else(|error| panic!("{case}: {}", error.render(false)));
         let ready =
             read.at(None).and_then(|at| at.prepare(0, read.pilots(1, 0))).expect("an answer");

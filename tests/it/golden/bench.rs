@@ -6,7 +6,7 @@ use trueflight::bench::clock::Clock;
 use trueflight::bench::record::{
     Bench, BenchCase, BenchRow, Conditions, CurvePoint, Spread, Times,
 };
-use trueflight::bench::stored::{Change, Comparison};
+use trueflight::bench::stored::{BenchComparison, TimeChange};
 use trueflight::case::id::{EstimatorName, ExperimentId, Number, SamplingName, SweepPoint};
 use trueflight::case::sweep::SweptQuantity;
 use trueflight::report::bench::{console, render, tables};
@@ -119,7 +119,7 @@ fn case() -> BenchCase {
 
 fn bench() -> Bench {
     let id = |name: &str| ExperimentId { case: "case".to_owned(), ..id(name, None) };
-    let change = |ratio: f64| Change {
+    let change = |ratio: f64| TimeChange {
         id: self::id("woodcock", Some(1.0)),
         ns_per_draw: [spread(32.0), spread(32.0 * ratio)],
         speedup: [spread(4.0), spread(4.0 / ratio)],
@@ -139,7 +139,7 @@ fn bench() -> Bench {
             speedup: Some(spread(4.0)),
         },
         cases: vec![case()],
-        comparison: Some(Comparison {
+        comparison: Some(BenchComparison {
             name: "main".to_owned(),
             tolerance: 0.25,
             compared: 3,

@@ -12,7 +12,7 @@ use trueflight::case::id::Number;
 use trueflight::record::{Record, Verdict};
 use trueflight::report::Artifact;
 use trueflight::report::layout::Pen;
-use trueflight::report::run::console::{self, View};
+use trueflight::report::run::console::{self, TableView};
 use trueflight::report::run::junit::Inconclusive;
 use trueflight::report::run::{self, annotations, junit, markdown, record_json, summary_csv};
 
@@ -112,7 +112,7 @@ fn rows_on_stdout_are_those_of_the_files() {
 /// One console is compared byte for byte; no line of any is wider than the terminal.
 #[test]
 fn consoles() {
-    for view in [View::Run, View::Predict, View::Moments, View::Plan] {
+    for view in [TableView::Run, TableView::Predict, TableView::Moments, TableView::Plan] {
         for width in [80, 160] {
             let text = console::table(&record(), view, Pen { width, colour: false });
             // A command is on one line, so that it can be copied.
@@ -123,7 +123,7 @@ fn consoles() {
             assert!(widest.is_some_and(|widest| widest <= width + 2), "{view:?} at {width}");
         }
     }
-    let text = console::table(&record(), View::Run, Pen { width: 160, colour: false });
+    let text = console::table(&record(), TableView::Run, Pen { width: 160, colour: false });
     compare(Path::new("console.txt"), text.as_bytes());
 }
 
@@ -173,7 +173,7 @@ fn infinite_numbers_do_not_break_the_json() {
 #[test]
 fn colours_change_nothing_but_the_colour() {
     let [plain, coloured] = [false, true]
-        .map(|colour| console::table(&record(), View::Run, Pen { width: 100, colour }));
+        .map(|colour| console::table(&record(), TableView::Run, Pen { width: 100, colour }));
     assert!(coloured.contains("\x1b[1;31mfail\x1b[0m"));
     let mut stripped = coloured;
     for code in ["0", "1", "2", "32", "1;31", "33"] {

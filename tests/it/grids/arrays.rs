@@ -1,7 +1,7 @@
 //! Arrays of `NumPy` as grids: the axis that is x, the order of the axes, and the type of the numbers.
 
 use trueflight::media::axes::Axes;
-use trueflight::media::grid_file::{Choice, Samples};
+use trueflight::media::grid_file::{GridChoice, Samples};
 
 use super::{data, refused, run, text, written};
 use crate::common::predicted;
@@ -19,15 +19,17 @@ fn singles(values: &[f32]) -> Vec<u8> {
 #[test]
 fn the_last_axis_is_x_whatever_the_order_in_memory() {
     let samples = singles(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-    let read = written("a.npy", &npy("<f4", "(1, 2, 3)", "False", &samples), &Choice::default());
+    let read =
+        written("a.npy", &npy("<f4", "(1, 2, 3)", "False", &samples), &GridChoice::default());
     let Samples { size, values, .. } = read.expect("a grid");
     assert_eq!((size, values), ([3, 2, 1], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]));
     // In Fortran's order the first axis, of length 1, varies fastest, then y, then x.
-    let read = written("a.npy", &npy("<f4", "(1, 2, 3)", "True", &samples), &Choice::default());
+    let read = written("a.npy", &npy("<f4", "(1, 2, 3)", "True", &samples), &GridChoice::default());
     let Samples { size, values, .. } = read.expect("a grid");
     assert_eq!((size, values), ([3, 2, 1], vec![0.0, 2.0, 4.0, 1.0, 3.0, 5.0]));
     // array[x, y, z] of shape (3, 2, 1).
-    let choice = Choice { axes: Axes::named("xyz").expect("an order"), ..Choice::default() };
+    let choice =
+        GridChoice { axes: Axes::named("xyz").expect("an order"), ..GridChoice::default() };
     let read = written("a.npy", &npy("<f4", "(3, 2, 1)", "False", &samples), &choice);
     let Samples { size, values, .. } = read.expect("a grid");
     assert_eq!((size, values), ([3, 2, 1], vec![0.0, 2.0, 4.0, 1.0, 3.0, 5.0]));
@@ -44,7 +46,8 @@ fn numbers_of_every_type_are_samples() {
         (">u2", &[0, 1, 0, 2]),
         ("<i8", &[1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0]),
     ] {
-        let read = written("a.npy", &npy(kind, "(1, 1, 2)", "False", numbers), &Choice::default());
+        let read =
+            written("a.npy", &npy(kind, "(1, 1, 2)", "False", numbers), &GridChoice::default());
         assert_eq!(read.expect(kind).values, [1.0, 2.0], "{kind}");
     }
 }
@@ -66,9 +69,9 @@ fn wrong_arrays_are_refused() {
         (whole[..whole.len() - 3].to_vec(), "shorter"),
         ([&whole[..], &[0]].concat(), "longer"),
     ] {
-        refused("a.npy", &bytes, &Choice::default(), words);
+        refused("a.npy", &bytes, &GridChoice::default(), words);
     }
-    refused("a.raw", &whole, &Choice::default(), "none of .vol, .npy, .vdb, .nvdb and .pbrt");
+    refused("a.raw", &whole, &GridChoice::default(), "none of .vol, .npy, .vdb, .nvdb and .pbrt");
 }
 
 /// The arrays of the field hold the same grid, once as array[z, y, x] and once as array[x, y, z].

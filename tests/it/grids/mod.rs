@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use assert_cmd::Command;
-use trueflight::media::grid_file::{self, Choice, Samples, Unreadable};
+use trueflight::media::grid_file::{self, GridChoice, Samples, Unreadable};
 
 /// Returns a file below `tests/data`.
 fn data(file: &str) -> PathBuf {
@@ -20,7 +20,7 @@ fn data(file: &str) -> PathBuf {
 }
 
 /// Reads bytes as a file of a name.
-fn written(name: &str, bytes: &[u8], choice: &Choice) -> Result<Samples, Unreadable> {
+fn written(name: &str, bytes: &[u8], choice: &GridChoice) -> Result<Samples, Unreadable> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).expect("written");
@@ -28,7 +28,7 @@ fn written(name: &str, bytes: &[u8], choice: &Choice) -> Result<Samples, Unreada
 }
 
 /// Asserts that bytes are refused with these words and this cure.
-fn refused(name: &str, bytes: &[u8], choice: &Choice, words: &str) {
+fn refused(name: &str, bytes: &[u8], choice: &GridChoice, words: &str) {
     let Unreadable { message, help } = written(name, bytes, choice).expect_err(words);
     assert!(message.contains(words), "{message}, not {words}");
     assert!(!help.is_empty(), "{words} has no cure");
@@ -54,12 +54,13 @@ fn turned_lattices_and_backgrounds_are_those_of_openvdb() {
 
 #[test]
 fn a_background_ends_at_its_box_and_plan_says_so() {
-    let samples = grid_file::read(&data("grids/filled.vdb"), &Choice::default()).expect("a grid");
+    let samples =
+        grid_file::read(&data("grids/filled.vdb"), &GridChoice::default()).expect("a grid");
     assert_eq!(samples.size, [5; 3]);
     assert!(samples.remark.contains("background 0.5 ends at its box"), "{}", samples.remark);
     let bounds = samples.bounds.expect("a box");
     assert_eq!([bounds.low.0, bounds.high.0], [[-1.0; 3], [3.0; 3]]);
-    let negative = grid_file::read(&data("grids/negative.vdb"), &Choice::default());
+    let negative = grid_file::read(&data("grids/negative.vdb"), &GridChoice::default());
     let Unreadable { message, help } = negative.expect_err("negative");
     assert!(message.contains("background is -0.5") && help.contains("not negative"), "{message}");
 }

@@ -1,12 +1,12 @@
 //! Files of `NanoVDB` against those of `OpenVDB` that they were made from, see `tests/data/grids/make.py`.
 
-use trueflight::media::grid_file::{self, Choice, Samples, Unreadable};
+use trueflight::media::grid_file::{self, GridChoice, Samples, Unreadable};
 
 use super::{data, refused, written};
 use crate::common::mutated::Choices;
 
 fn read(file: &str, grid: Option<&str>) -> Result<Samples, Unreadable> {
-    let choice = Choice { grid: grid.map(str::to_owned), ..Choice::default() };
+    let choice = GridChoice { grid: grid.map(str::to_owned), ..GridChoice::default() };
     grid_file::read(&data(file), &choice)
 }
 
@@ -62,13 +62,13 @@ fn plain_files_and_grids_as_they_lie_in_memory_are_read() {
         let zipped = read(file, None).expect("a grid");
         let [whole, grid] = plain(file);
         assert_eq!(
-            written("a.nvdb", &whole, &Choice::default()).expect("a grid"),
+            written("a.nvdb", &whole, &GridChoice::default()).expect("a grid"),
             zipped,
             "{file}"
         );
         if file.contains("later") {
             assert_eq!(
-                written("a.nvdb", &grid, &Choice::default()).expect("a grid"),
+                written("a.nvdb", &grid, &GridChoice::default()).expect("a grid"),
                 zipped,
                 "{file}"
             );
@@ -120,7 +120,7 @@ fn other_files_are_refused_with_the_cure() {
         bytes
     };
     // The codec of a segment is ignored: each grid has its own.
-    assert!(written("a.nvdb", &with(14, &[9]), &Choice::default()).is_ok());
+    assert!(written("a.nvdb", &with(14, &[9]), &GridChoice::default()).is_ok());
     let root = 16 + 176 + 8 + 672 + 64;
     for (bytes, words) in [
         (Vec::new(), "no grid"),
@@ -136,7 +136,7 @@ fn other_files_are_refused_with_the_cure() {
         (with(root + 64 + 8, &i64::MIN.to_le_bytes()), "a node stands"),
         (grid[..700].to_vec(), "ends at byte 700"),
     ] {
-        refused("a.nvdb", &bytes, &Choice::default(), words);
+        refused("a.nvdb", &bytes, &GridChoice::default(), words);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Grids in scene files of pbrt.
 
-use trueflight::media::grid_file::{Choice, Samples};
+use trueflight::media::grid_file::{GridChoice, Samples};
 
 use super::{refused, written};
 
@@ -16,7 +16,7 @@ Shape \"sphere\" \"float radius\" 1
 ";
 
 fn read(text: &str) -> Samples {
-    written("a.pbrt", text.as_bytes(), &Choice::default())
+    written("a.pbrt", text.as_bytes(), &GridChoice::default())
         .unwrap_or_else(|error| panic!("{error:?}"))
 }
 
@@ -70,13 +70,13 @@ fn the_box_moves_with_its_scene() {
 #[test]
 fn a_medium_is_chosen_by_its_name() {
     let two = format!("{SMOKE}{}", SMOKE.replace("\"smoke\"", "\"fog\"").replace("0.5 1", "3 4"));
-    let fog = Choice { grid: Some("fog".into()), ..Choice::default() };
+    let fog = GridChoice { grid: Some("fog".into()), ..GridChoice::default() };
     assert_eq!(
         written("a.pbrt", two.as_bytes(), &fog).expect("a grid").values,
         [3.0, 4.0, 2.0, 0.25]
     );
-    refused("a.pbrt", two.as_bytes(), &Choice::default(), "several media: \"smoke\", \"fog\"");
-    let none = Choice { grid: Some("mist".into()), ..Choice::default() };
+    refused("a.pbrt", two.as_bytes(), &GridChoice::default(), "several media: \"smoke\", \"fog\"");
+    let none = GridChoice { grid: Some("mist".into()), ..GridChoice::default() };
     refused("a.pbrt", two.as_bytes(), &none, "no medium \"mist\", but \"smoke\", \"fog\"");
     // Media without grids do not make a choice necessary.
     let air = format!("MakeNamedMedium \"air\" \"string type\" \"homogeneous\"\n{SMOKE}");
@@ -112,16 +112,16 @@ fn wrong_scenes_are_refused() {
         ("\"smoke\"", "smoke", "a medium has no name"),
     ] {
         assert!(SMOKE.contains(from), "{from}");
-        refused("a.pbrt", SMOKE.replacen(from, to, 1).as_bytes(), &Choice::default(), words);
+        refused("a.pbrt", SMOKE.replacen(from, to, 1).as_bytes(), &GridChoice::default(), words);
     }
     refused(
         "a.pbrt",
         b"Include \"smoke-grid.pbrt\"",
-        &Choice::default(),
+        &GridChoice::default(),
         "includes \"smoke-grid.pbrt\"",
     );
-    refused("a.pbrt", b"", &Choice::default(), "no medium");
-    refused("a.pbrt", &[0xff, 0xfe], &Choice::default(), "no text");
+    refused("a.pbrt", b"", &GridChoice::default(), "no medium");
+    refused("a.pbrt", &[0xff, 0xfe], &GridChoice::default(), "no text");
 }
 
 /// pbrt's samples are 0 beyond the box, so that σ_t falls to half towards its faces.

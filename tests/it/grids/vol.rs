@@ -1,7 +1,7 @@
 //! Mitsuba's grids: encodings, channels, and headers that are wrong.
 
 use trueflight::geometry::Point;
-use trueflight::media::grid_file::{Choice, Samples};
+use trueflight::media::grid_file::{GridChoice, Samples};
 
 use super::{data, refused, run, text, written};
 
@@ -19,8 +19,8 @@ fn singles(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-fn channel(channel: usize) -> Choice {
-    Choice { channel: Some(channel), ..Choice::default() }
+fn channel(channel: usize) -> GridChoice {
+    GridChoice { channel: Some(channel), ..GridChoice::default() }
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn samples_are_read_in_every_encoding() {
         (2, &half, [0.5, 1.0, 0.0, 2.0]),
         (3, &[0, 51, 102, 255], [0.0, 0.2, 0.4, 1.0]),
     ] {
-        let read = written("a.vol", &vol([2, 2, 1], kind, 1, samples), &Choice::default());
+        let read = written("a.vol", &vol([2, 2, 1], kind, 1, samples), &GridChoice::default());
         let Samples { size, values: found, bounds, .. } = read.expect("a grid");
         assert_eq!((size, &found[..]), ([2, 2, 1], &values[..]), "encoding {kind}");
         assert_eq!(bounds.map(|bounds| bounds.high), Some(Point([1.0, 2.0, 3.0])));
@@ -49,7 +49,7 @@ fn a_channel_is_chosen() {
     }
     let coded = vol([2, 1, 1], 3, 3, &[0, 51, 102, 255, 204, 153]);
     assert_eq!(written("A.VOL", &coded, &channel(1)).expect("a grid").values, [0.2, 0.8]);
-    refused("a.vol", &bytes, &Choice::default(), "3 channels");
+    refused("a.vol", &bytes, &GridChoice::default(), "3 channels");
     refused("a.vol", &bytes, &channel(3), "no channel 3: it has 3");
 }
 

@@ -9,7 +9,7 @@ use trueflight::case::Case;
 use trueflight::case::suite;
 use trueflight::gate::session::Reason;
 use trueflight::plan::{Plan, PlannedCase};
-use trueflight::record::baseline::Measured;
+use trueflight::record::baseline::MeasuredValue;
 use trueflight::record::{CaseRecord, Record, Row, Verdict, build};
 use trueflight::report::run::{html, record_json};
 
@@ -165,7 +165,7 @@ fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
         }
         for change in &mut record.comparison.as_mut().expect("a comparison").changes {
             change.before.value = 1.0;
-            change.now = Measured { value: odd, error: Some(odd) };
+            change.now = MeasuredValue { value: odd, error: Some(odd) };
             (change.ratio, change.interval) = (odd, Some([0.5, odd]));
         }
         let html = text(&record);

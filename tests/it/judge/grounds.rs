@@ -1,9 +1,9 @@
 //! Verdicts need grounds: missing evidence is no reason to fail.
 
 use gate::stats::verdict::BLOCK;
-use lab::self_test::streams::{self, CLAIMS, LAWS, Law};
+use lab::self_test::streams::{self, CLAIMS, DrawDistribution, LAWS};
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::estimators::DrawBuffer;
 use trueflight::judge::{CheckedClaim, Claim, Options, ROUNDING};
 use trueflight::plan::{self, Plan};
@@ -41,7 +41,12 @@ fn correct_draws_of_hard_laws_do_not_fail() {
 #[test]
 fn the_moments_of_the_laws_are_those_of_their_draws() {
     // Light tails only: other distributions have no sample moments to compare with.
-    for law in [Law::Bernoulli(1e-2), Law::Exponential, Law::Narrow, Law::Uniform] {
+    for law in [
+        DrawDistribution::Bernoulli(1e-2),
+        DrawDistribution::Exponential,
+        DrawDistribution::Narrow,
+        DrawDistribution::Uniform,
+    ] {
         let claim = law.claim(CLAIMS[2]).expect("a claim");
         let draws = law.draws(9);
         let n = draws.len() as f64;
@@ -53,7 +58,7 @@ fn the_moments_of_the_laws_are_those_of_their_draws() {
         assert!((moment(4) / (variance * variance) / kurtosis - 1.0).abs() < 0.2, "{law}");
     }
     // By hand: E[X] = e^{−2.25}, E[X²] = e⁰, E[X³] = e^{−3.375}, E[X⁴] = e^{1.8}.
-    let claim = Law::Signed.claim(CLAIMS[2]).expect("a claim");
+    let claim = DrawDistribution::Signed.claim(CLAIMS[2]).expect("a claim");
     assert!((claim.truth - (-2.25f64).exp()).abs() < 1e-15);
     assert!((claim.variance.expect("V") - (1.0 - (-4.5f64).exp())).abs() < 1e-14);
     let (m, three) = ((-2.25f64).exp(), (-3.375f64).exp());
@@ -70,7 +75,7 @@ fn eq21(sampling: f64, seed: u64) -> Vec<f64> {
          estimators = [{{ ratio = {{ sampling.constant.value = {sampling:?} }} }}]\n"
     );
     let place = Place::new(&[("eq21.toml", text.as_bytes())]);
-    let source = Source::read(&place.path().join("eq21.toml")).expect("a case");
+    let source = CaseText::read(&place.path().join("eq21.toml")).expect("a case");
     let case = Case::read(&source).expect("a case");
     let options = plan::Options { seed, ..plan::Options::default() };
     let plan = Plan::new(std::slice::from_ref(&case), &options);

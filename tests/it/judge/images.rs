@@ -3,7 +3,9 @@
 use std::fs;
 
 use trueflight::judge::images::judgement::Tile;
-use trueflight::judge::images::{Claim, Judgement, Level, Options, Picture, Size, Stack, judge};
+use trueflight::judge::images::{
+    Claim, ImageOptions, Judgement, Level, Picture, Size, Stack, judge,
+};
 use trueflight::rng::{Address, unit};
 use trueflight::stats::verdict::Verdict;
 
@@ -37,12 +39,12 @@ fn claim() -> Claim {
     Claim { variance, ..Claim::of_truth(image(truth)) }
 }
 
-fn judged(passes: &[Vec<f64>], claim: &Claim, wanted: &Options) -> Judgement {
+fn judged(passes: &[Vec<f64>], claim: &Claim, wanted: &ImageOptions) -> Judgement {
     let stack = Stack::new(passes.len(), SIZE, passes.concat()).expect("a stack");
     judge(&stack, claim, wanted).expect("a judgement")
 }
 
-const LOOSE: Options = Options { tile: None, tolerance: None, alpha: 0.05 };
+const LOOSE: ImageOptions = ImageOptions { tile: None, tolerance: None, alpha: 0.05 };
 
 /// At α = 0.05 at most 200 · 0.05 = 10 of 200 correct stacks may fail on average; the e-values are far below.
 #[test]
@@ -63,7 +65,7 @@ fn honest_stacks_never_fail_and_most_pass() {
 #[test]
 fn what_is_wrong_is_found_where_it_is() {
     let is_bad = |pixel: usize| (16..24).contains(&(pixel / 40)) && (8..16).contains(&(pixel % 40));
-    let tile = Options { tile: Some(8), ..Options::default() };
+    let tile = ImageOptions { tile: Some(8), ..ImageOptions::default() };
     let found = judged(&passes(1, 64, |_, p| if is_bad(p) { 1.15 } else { 1.0 }), &claim(), &tile);
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
     assert_eq!((found.worst[0].row, found.worst[0].column, found.worst[0].size), (16, 8, 8));
@@ -91,7 +93,7 @@ fn what_is_wrong_is_found_where_it_is() {
 
 #[test]
 fn a_dark_percent_shows_in_the_whole() {
-    let found = judged(&passes(4, 600, |_, _| 0.99), &claim(), &Options::default());
+    let found = judged(&passes(4, 600, |_, _| 0.99), &claim(), &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
     // z = −0.01 √(600 · 1920) = −10.7 in units of the relative spread, weighted by the truth: about −10.
     assert!(found.whole[0].z.is_some_and(|z| (-14.0..-6.0).contains(&z)), "{:?}", found.whole[0]);
@@ -99,7 +101,7 @@ fn a_dark_percent_shows_in_the_whole() {
 
 #[test]
 fn single_pixels_can_fail() {
-    let pixels = Options { tile: Some(1), ..Options::default() };
+    let pixels = ImageOptions { tile: Some(1), ..ImageOptions::default() };
     let found = judged(&passes(5, 64, |_, p| if p == 777 { 2.5 } else { 1.0 }), &claim(), &pixels);
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
     let worst = &found.worst[0];
@@ -117,12 +119,12 @@ fn equal_passes_and_chains_are_inconclusive() {
     let honest = passes(6, 24, |_, _| 1.0);
     let mut twice = honest.clone();
     twice[17] = twice[4].clone();
-    let found = judged(&twice, &claim(), &Options::default());
+    let found = judged(&twice, &claim(), &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("passes 4, 17 share values"), "{}", found.reason);
     assert_eq!(found.repeated, [4, 17]);
 
-    let found = judged(&vec![honest[0].clone(); 6], &claim(), &Options::default());
+    let found = judged(&vec![honest[0].clone(); 6], &claim(), &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("one image"), "{}", found.reason);
 
@@ -132,7 +134,7 @@ fn equal_passes_and_chains_are_inconclusive() {
         let (before, after) = chain.split_at_mut(pass);
         after[0].iter_mut().zip(&before[pass - 1]).for_each(|(x, last)| *x = 0.5 * (*x + last));
     }
-    let found = judged(&chain, &claim(), &Options::default());
+    let found = judged(&chain, &claim(), &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("passes that are 1 apart"), "{}", found.reason);
     assert!(found.tiles.iter().all(|tile| tile.verdict == Verdict::Inconclusive));
@@ -152,22 +154,22 @@ fn blended(seed: u64, count: usize) -> Vec<Vec<f64>> {
 #[test]
 fn pixels_that_depend_on_each_other_are_judged_by_the_range_alone() {
     let stack = blended(7, 32);
-    let found = judged(&stack, &claim(), &Options::default());
+    let found = judged(&stack, &claim(), &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.reason);
     assert!(found.neighbours.is_refuted() && found.reason.contains("filter"), "{}", found.reason);
     // Averages in a range need no independence of pixels: 0 to 40 is far from all of them.
     let wide = Claim { range: Some([0.0, 40.0]), ..claim() };
-    assert_ne!(judged(&stack, &wide, &Options::default()).verdict, Verdict::Fail);
+    assert_ne!(judged(&stack, &wide, &ImageOptions::default()).verdict, Verdict::Fail);
     // Stakes of at most ¾ of the possible loss gain 0.21 per pass: 20 of 96 passes, where ln(1/0.2α) is 8.5.
     let off = Claim { range: Some([0.0, 40.0]), ..Claim::of_truth(Level::All(10.0)) };
-    let found = judged(&blended(7, 96), &off, &Options::default());
+    let found = judged(&blended(7, 96), &off, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
 }
 
 #[test]
 fn a_variance_that_is_too_small_is_named_and_the_means_are_not_accused() {
     let small = Claim { variance: Some(image(|p| 0.5 * truth(p) * truth(p))), ..claim() };
-    let found = judged(&passes(8, 32, |_, _| 1.0), &small, &Options::default());
+    let found = judged(&passes(8, 32, |_, _| 1.0), &small, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Fail);
     assert!(
         found.reason.starts_with("the variance is too small: the passes vary"),
@@ -184,7 +186,7 @@ fn a_variance_that_is_too_small_is_named_and_the_means_are_not_accused() {
 fn without_grounds_nothing_is_decided_and_a_range_is_one() {
     let alone = Claim::of_truth(image(truth));
     let off = passes(9, 32, |_, _| 1.3);
-    let found = judged(&off, &alone, &Options::default());
+    let found = judged(&off, &alone, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("--variance"), "{}", found.reason);
     // Draws of 0 or twice the truth.
@@ -195,14 +197,14 @@ fn without_grounds_nothing_is_decided_and_a_range_is_one() {
     };
     // Values that are never negative may only show that a mean is too large.
     let endless = Claim { range: Some([0.0, f64::INFINITY]), ..alone.clone() };
-    assert_eq!(judged(&off, &endless, &Options::default()).verdict, Verdict::Fail);
-    let found = judged(&passes(9, 32, |_, _| 0.7), &endless, &Options::default());
+    assert_eq!(judged(&off, &endless, &ImageOptions::default()).verdict, Verdict::Fail);
+    let found = judged(&passes(9, 32, |_, _| 0.7), &endless, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("infinite end"), "{}", found.reason);
     let ranged = Claim { range: Some([0.0, 2.5]), ..alone };
-    let found = judged(&coins(1, 0.5), &ranged, &Options::default());
+    let found = judged(&coins(1, 0.5), &ranged, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Pass, "{}", found.reason);
-    let found = judged(&coins(2, 0.45), &ranged, &Options::default());
+    let found = judged(&coins(2, 0.45), &ranged, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Fail, "{}", found.reason);
 }
 
@@ -212,10 +214,10 @@ fn black_pixels_must_be_black() {
     let of = |pixel: usize| if is_black(pixel) { 0.0 } else { truth(pixel) };
     let claim = Claim { variance: Some(image(|p| of(p) * of(p))), ..Claim::of_truth(image(of)) };
     let mut passes = passes(10, 32, |_, p| if is_black(p) { 0.0 } else { 1.0 });
-    let found = judged(&passes, &claim, &Options { tile: Some(8), ..Options::default() });
+    let found = judged(&passes, &claim, &ImageOptions { tile: Some(8), ..ImageOptions::default() });
     assert_eq!(found.verdict, Verdict::Pass, "{}", found.reason);
     passes[20][85] = 1e-9;
-    let found = judged(&passes, &claim, &Options::default());
+    let found = judged(&passes, &claim, &ImageOptions::default());
     assert_eq!(found.verdict, Verdict::Fail);
     assert!(
         found.reason.starts_with("pass 20, row 2, column 5 is 1e-9, not 0e0"),
@@ -230,7 +232,7 @@ fn what_is_not_a_finite_number_fails_with_its_place() {
         let mut passes = passes(11, 16, |_, _| 1.0);
         passes[3][5 * 40 + 7] = value;
         passes[9][0] = value;
-        let found = judged(&passes, &claim(), &Options::default());
+        let found = judged(&passes, &claim(), &ImageOptions::default());
         assert_eq!(found.verdict, Verdict::Fail);
         assert!(
             found.reason.starts_with("numeric: pass 3, row 5, column 7 is "),
@@ -281,7 +283,7 @@ fn the_command_says_it_and_writes_it() {
 /// With an ε of 5 % a tile of 8 × 8 pixels takes s²/0.05² values: 8 passes are too few, and the verdict says how many are not.
 #[test]
 fn an_inconclusive_verdict_names_the_passes_that_decide() {
-    let wanted = Options { tile: Some(8), tolerance: Some(0.05), alpha: 1e-3 };
+    let wanted = ImageOptions { tile: Some(8), tolerance: Some(0.05), alpha: 1e-3 };
     let found = judged(&passes(6, 8, |_, _| 1.0), &claim(), &wanted);
     assert_eq!(found.verdict, Verdict::Inconclusive, "{}", found.reason);
     let needed: Vec<f64> = found.tiles.iter().filter_map(|tile| tile.needed).collect();

@@ -1,6 +1,8 @@
 //! Usual mistakes of first users, and the verdicts that name them.
 
-use trueflight::judge::images::{Claim, Judgement, Level, Options, Picture, Size, Stack, judge};
+use trueflight::judge::images::{
+    Claim, ImageOptions, Judgement, Level, Picture, Size, Stack, judge,
+};
 use trueflight::report::judge::images::console::block;
 use trueflight::rng::{Address, unit};
 use trueflight::stats::normal::upper_quantile;
@@ -51,7 +53,7 @@ fn exact() -> Claim {
 }
 
 fn judged(values: Vec<f64>, claim: &Claim) -> Judgement {
-    judge(&stack(values), claim, &Options::default()).expect("a judgement")
+    judge(&stack(values), claim, &ImageOptions::default()).expect("a judgement")
 }
 
 /// The variance of hits and misses grows with their mean: 1.15 (1 − 1.15 p)/(1 − p) = 1.13.
@@ -141,7 +143,7 @@ fn more_passes_of_heavy_tails_do_not_take_a_pass_back() {
     assert_eq!(found.verdict, Verdict::Pass, "tile {}: {}", found.tile, found.reason);
     // 4 × 4 pixels have 8,192 values.
     assert!(found.tile > 4, "{}", found.tile);
-    let small = Options { tile: Some(2), ..Options::default() };
+    let small = ImageOptions { tile: Some(2), ..ImageOptions::default() };
     let found = judge(&stack(passes(7, 512)), &claim, &small).expect("a judgement");
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("or give --tile "), "{}", found.reason);
@@ -182,7 +184,7 @@ fn channels_of_one_place_are_one_line() {
     let variance = level(&|p| [1.0_f64, 0.81, 0.64].map(|square| 2.0 * square * hit(p)));
     let claim = Claim { variance, ..Claim::of_truth(truth) };
     let stack = Stack::new(128, size, bad).expect("a stack");
-    let found = judge(&stack, &claim, &Options::default()).expect("a judgement");
+    let found = judge(&stack, &claim, &ImageOptions::default()).expect("a judgement");
     assert_eq!(found.verdict, Verdict::Fail);
     assert_eq!(found.reason.matches("the picture is off").count(), 1, "{}", found.reason);
     assert!(found.reason.contains("off in 3 of 3 channels; the furthest: the mean in channel"));

@@ -18,7 +18,7 @@ use assert_cmd::Command;
 use gate::stats::verdict::BLOCK;
 use tempfile::TempDir;
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 use trueflight::draw::run;
 use trueflight::estimators::DrawBuffer;
 use trueflight::plan::Amount;
@@ -364,7 +364,7 @@ fn drawn(case: &Case, draws: u64) -> (Vec<f64>, serde_json::Value) {
 #[test]
 fn theory_judges_the_library_s_own_draws() {
     let place = Place::new(&[("case.toml", CASE.as_bytes())]);
-    let source = Source::read(&place.path().join("case.toml")).expect("a case");
+    let source = CaseText::read(&place.path().join("case.toml")).expect("a case");
     let case = Case::read(&source).expect("no mistakes");
     let n = 20 * BLOCK;
     let (values, row) = drawn(&case, n);

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use trueflight::judge::{CheckedClaim, Claim, Draws, Format, Options, Stop};
+use trueflight::judge::{CheckedClaim, Claim, DrawSource, NumberFormat, Options, Stop};
 
 use super::{CASE, Place, UNIFORM, raw, uniform};
 
@@ -127,8 +127,8 @@ fn a_pipe_without_end_ends() {
     let claim = Claim { variance: Some(0.0), ..Claim::of_truth(0.5) }.validated();
     let wanted = Options { most: Some(1_000_000), ..Options::default() };
     let trial = CheckedClaim::new(claim.expect("a claim"), wanted, None).expect("a trial");
-    let format = Format::Csv { column: None, lookups: None };
-    let mut draws = Draws::from_reader(Endless, "stdin", format).expect("draws");
+    let format = NumberFormat::Csv { column: None, lookups: None };
+    let mut draws = DrawSource::from_reader(Endless, "stdin", format).expect("draws");
     let judgement = trial.judge(&mut draws).expect("a verdict");
     assert_eq!((judgement.draws, judgement.stopped), (1_000_000, Some(Stop::Limit)));
     let place = Place::new(&[("x.f64", &raw(&uniform(20_000)))]);

@@ -9,9 +9,9 @@ use std::path::Path;
 use crate::common;
 use lab::mutants::{self, streams};
 use lab::self_test;
-use lab::self_test::mutation::{self, Walk};
+use lab::self_test::mutation::{self, MutantWalk};
 use trueflight::draw::run;
-use trueflight::gate::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
+use trueflight::gate::causes::{CAUSES, DeviationSide, Pattern, SweepPart, TABLE, line};
 use trueflight::plan::Plan;
 use trueflight::record::build;
 use trueflight::record::{CaseRecord, Verdict};
@@ -37,7 +37,7 @@ const FLAGS: [Flag; 6] = [
 /// check.
 fn word(pattern: &Pattern) -> String {
     let sides = [pattern.mean, pattern.variance, pattern.lookups];
-    let mut word: String = sides.map(Side::sign).iter().collect();
+    let mut word: String = sides.map(DeviationSide::sign).iter().collect();
     let mut pattern = *pattern;
     word.extend(FLAGS.iter().filter(|flag| *flag.1(&mut pattern)).map(|flag| flag.0));
     word
@@ -45,10 +45,10 @@ fn word(pattern: &Pattern) -> String {
 
 fn pattern(word: &str) -> Pattern {
     let side = |sign: char| match sign {
-        '0' => Side::Right,
-        '-' => Side::Low,
-        '+' => Side::High,
-        '*' => Side::Both,
+        '0' => DeviationSide::Right,
+        '-' => DeviationSide::Low,
+        '+' => DeviationSide::High,
+        '*' => DeviationSide::Both,
         _ => panic!("{sign} is no side"),
     };
     let mut signs = word.chars();
@@ -168,7 +168,7 @@ fn swept_with(bug: &str) -> CaseRecord {
     let mut plan = Plan::new(&cases, &options);
     let about = mutants::all().into_iter().find(|about| about.name == bug).expect("a known bug");
     for planned in &mut plan.cases[0].experiments {
-        let faulty = mutation::experiment(&about, Walk::Faulty, &cases[0], planned, 1);
+        let faulty = mutation::experiment(&about, MutantWalk::Faulty, &cases[0], planned, 1);
         let faulty = faulty.expect("a mutant of ratio tracking").expect("it can be drawn");
         planned.outcome.as_mut().expect("it can be drawn").experiment = faulty;
     }
@@ -180,10 +180,10 @@ fn swept_with(bug: &str) -> CaseRecord {
 #[test]
 fn a_failure_at_one_end_of_a_sweep_is_told_as_such() {
     for (bug, end) in [
-        ("weight-absolute", Place::LowEnd),
-        ("weight-clamped", Place::LowEnd),
-        ("cap-100", Place::HighEnd),
-        ("flight-log2", Place::Anywhere),
+        ("weight-absolute", SweepPart::LowEnd),
+        ("weight-clamped", SweepPart::LowEnd),
+        ("cap-100", SweepPart::HighEnd),
+        ("flight-log2", SweepPart::Anywhere),
     ] {
         let case = swept_with(bug);
         let failing: Vec<_> =

@@ -14,7 +14,7 @@ use trueflight::numeric::Span;
 use trueflight::numeric::matrix::Matrix;
 use trueflight::numeric::quadrature::GaussLegendre;
 use trueflight::theory::space::sphere::ball::{Ball, Chord};
-use trueflight::theory::space::sphere::shells::{Centre, Row, Rules, Shell, Shells};
+use trueflight::theory::space::sphere::shells::{Centre, FunctionalRow, GaussRules, Shell, Shells};
 
 use super::{RADIUS, Reference, references};
 
@@ -103,9 +103,9 @@ fn views(r: f64, rule: &GaussLegendre) -> Vec<[f64; 3]> {
 fn radiances(medium: Medium, albedo: f64, offsets: &[f64]) -> Vec<Vec<f64>> {
     let extinction = |r2: f64| medium[0] - medium[1] * r2;
     let ball = Ball { radius: RADIUS, centre: Centre::Medium, extinction: &extinction };
-    let (shells, rules) = (shells(), Rules::new(NODES + 8));
+    let (shells, rules) = (shells(), GaussRules::new(NODES + 8));
     let collected = |views: &[[f64; 3]]| {
-        let (mut row, mut direct) = (Row::new(shells.count), 0.0);
+        let (mut row, mut direct) = (FunctionalRow::new(shells.count), 0.0);
         for &[offset2, from, weight] in views {
             let chord = ball.chord(offset2, from);
             ball.collect(&chord, &shells, &rules, weight, &mut row);

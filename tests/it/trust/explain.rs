@@ -33,9 +33,7 @@ fn pages() -> Vec<(String, Page)> {
         ("problems", problems::CATALOGUE),
     ];
     let lists = built_in().into_iter().chain(others.map(|(part, pages)| (part.to_owned(), pages)));
-    lists
-        .flat_map(|(part, pages)| pages.iter().map(move |page| (part.clone(), *page)))
-        .collect()
+    lists.flat_map(|(part, pages)| pages.iter().map(move |page| (part.clone(), *page))).collect()
 }
 
 #[test]

@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use trueflight::geometry::{Bounds, Point};
-use trueflight::media::grid_file::{self, Choice, Samples, Unreadable};
+use trueflight::media::grid_file::{self, GridChoice, Samples, Unreadable};
 use trueflight::media::{Body, Volume};
 
 use crate::common::{body, differs, failing, judged, mistakes, none, options, source};
 use trueflight::case::Case;
-use trueflight::case::Source;
+use trueflight::case::CaseText;
 
 fn path(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/vdb").join(file)
 }
 
 fn samples(file: &str, grid: Option<&str>) -> Result<Samples, Unreadable> {
-    let choice = Choice { grid: grid.map(str::to_owned), ..Choice::default() };
+    let choice = GridChoice { grid: grid.map(str::to_owned), ..GridChoice::default() };
     grid_file::read(&path(file), &choice)
 }
 
@@ -168,7 +168,7 @@ fn files_that_are_no_medium_are_refused_with_the_cure() {
 fn the_example_passes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let text = std::fs::read_to_string(folder.join("openvdb.toml")).expect("a case");
-    let example = Source { name: "openvdb".into(), path: folder.join("openvdb.toml"), text };
+    let example = CaseText { name: "openvdb".into(), path: folder.join("openvdb.toml"), text };
     let case = Case::read(&example).unwrap_or_else(|error| panic!("{}", error.render(false)));
     let record = judged(&[case], &options(1, 200_000));
     let rows = record.results.cases[0].rows().collect::<Vec<_>>();

@@ -7,10 +7,10 @@
 use fearless_simd::Level;
 
 use super::Method;
-use super::subpath::{Field, Tracker};
+use super::subpath::{LaneFunctions, RodTracker};
 use super::walk::draw_each;
 use crate::setup::Setup;
-use crate::walks::slots::{Numbers, leave};
+use crate::walks::slots::{PackStreams, leave};
 use crate::{DrawBuffer, Request};
 use media::Lookups;
 use media::sampling::FlightWithGaps;
@@ -32,18 +32,18 @@ pub fn packets<'r>(
     if setup.fields.sampling.with_gaps().is_none() {
         return Some(request);
     }
-    let task = Draws { method, setup, medium, request };
+    let task = BatchDraws { method, setup, medium, request };
     pack::on(level, task).err().map(|task| task.request)
 }
 
-struct Draws<'a, 'r> {
+struct BatchDraws<'a, 'r> {
     method: Method,
     setup: &'a Setup<BidirectionalRod>,
     medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl Task for Draws<'_, '_> {
+impl Task for BatchDraws<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -56,11 +56,11 @@ impl Task for Draws<'_, '_> {
         let begin = FlightWithGaps::new(zero, sampling);
         let ends = [begin, begin.from_end()];
         let [first, second] = streams.packs();
-        let mut random = Both::<S>(first.awake(simd), second.awake(simd));
-        let mut tracker = Tracker::new(setup, zero, ends, InPairs { simd, medium });
+        let mut random = PackPair::<S>(first.awake(simd), second.awake(simd));
+        let mut tracker = RodTracker::new(setup, zero, ends, InPairs { simd, medium });
         let mut rows = [[0.0; LANES]; MAX_CHANNELS];
         for base in (0..count).step_by(LANES) {
-            let draws = Batch { base, turn: streams.turn };
+            let draws = LaneBatch { base, turn: streams.turn };
             let lives = draws.lives(count);
             let lives = Pair(simd.mask(lives & 0xff), simd.mask(lives >> WIDTH));
             let channels = draw_each(method, &mut tracker, lives, &mut random);
@@ -83,7 +83,7 @@ struct InPairs<'a, S> {
     medium: &'a Lookups<'a>,
 }
 
-impl<S: Hardware> Field<Pair<S::Pack>> for InPairs<'_, S> {
+impl<S: Hardware> LaneFunctions<Pair<S::Pack>> for InPairs<'_, S> {
     #[inline(always)]
     fn extinction(&self, t: Pair<S::Pack>) -> Pair<S::Pack> {
         self.medium.pair(self.simd, t)
@@ -97,9 +97,9 @@ impl<S: Hardware> Field<Pair<S::Pack>> for InPairs<'_, S> {
 
 /// The streams of both packs.
 #[derive(Clone, Copy)]
-struct Both<S: Hardware>(Numbers<S>, Numbers<S>);
+struct PackPair<S: Hardware>(PackStreams<S>, PackStreams<S>);
 
-impl<S: Hardware> Random<Pair<S::Pack>> for Both<S> {
+impl<S: Hardware> Random<Pair<S::Pack>> for PackPair<S> {
     #[inline(always)]
     fn uniform(&mut self) -> Pair<S::Pack> {
         Pair(self.0.uniform(), self.1.uniform())
@@ -122,12 +122,12 @@ impl<S: Hardware> Random<Pair<S::Pack>> for Both<S> {
 }
 
 /// Sixteen draws in a row, one from each lane in turn.
-struct Batch {
+struct LaneBatch {
     base: usize,
     turn: usize,
 }
 
-impl Batch {
+impl LaneBatch {
     fn draw(&self, lane: usize) -> usize {
         self.base + (lane + LANES - self.turn) % LANES
     }

@@ -17,7 +17,7 @@ use ::theory::Prediction;
 use ::theory::light::Heuristic;
 use ::theory::problems::BidirectionalRod;
 use ::theory::problems::bidirectional_rod::Sensor;
-use ::theory::rod::bidirectional::{self, Combination, Connection, Rules, Scene};
+use ::theory::rod::bidirectional::{self, Combination, Connection, DrawRules, RodScene};
 use media::catalogue::Settings;
 use numeric::Lane;
 use numeric::digits::rounded;
@@ -138,7 +138,7 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
 
     fn predict(&self, setup: &Setup<BidirectionalRod>) -> Prediction {
         let problem = &setup.problem;
-        let scene = Scene {
+        let scene = RodScene {
             depth: setup.fields.mesh.optical_depth(),
             albedo: problem.albedo,
             forward: problem.forward,
@@ -150,7 +150,8 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         let tracked = ratio.filter(|_| self.0.is_tracked).map(Connection::Ratio);
         let connection = tracked.unwrap_or(Connection::Exact);
         let Method { combination, is_shared, .. } = self.0;
-        let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
+        let rules =
+            DrawRules { combination, connection, is_shared, has_shares: problem.has_shares };
         bidirectional::predict(&scene, &rules, ratio, setup.distributions)
     }
 

@@ -40,7 +40,7 @@ pub struct Subpath<L: Lane, P> {
 }
 
 /// Functions that are evaluated for all lanes at once.
-pub trait Field<L: Lane> {
+pub trait LaneFunctions<L: Lane> {
     /// σ_t at distances.
     fn extinction(&self, t: L) -> L;
 
@@ -49,7 +49,7 @@ pub trait Field<L: Lane> {
 }
 
 /// Tracking through the rod of one experiment. It is passed by reference: copies would cost more than the draws.
-pub struct Tracker<'a, L: Lane, C: BothWays<L>, F> {
+pub struct RodTracker<'a, L: Lane, C: BothWays<L>, F> {
     /// The rod and σ̂.
     pub setup: &'a Setup<BidirectionalRod>,
     /// σ_t.
@@ -66,7 +66,7 @@ pub struct Tracker<'a, L: Lane, C: BothWays<L>, F> {
     pub values: [L; MAX_CHANNELS],
 }
 
-impl<'a, L: Lane, C: BothWays<L>, F: Field<L>> Tracker<'a, L, C, F> {
+impl<'a, L: Lane, C: BothWays<L>, F: LaneFunctions<L>> RodTracker<'a, L, C, F> {
     /// A tracker without lookups; `ends` are at the beginning and at the end of σ̂.
     #[inline(always)]
     pub fn new(setup: &'a Setup<BidirectionalRod>, zero: L, ends: [C; 2], field: F) -> Self {

@@ -12,7 +12,7 @@
 
 use super::Method;
 use super::path::Path;
-use super::subpath::{Field, Side, Subpath, Tracker};
+use super::subpath::{LaneFunctions, RodTracker, Side, Subpath};
 use crate::{Draw, Setup};
 use media::sampling::{BothWays, FlightOverPieces, FlightWithGaps};
 use media::{Extinction, Lookups};
@@ -20,7 +20,7 @@ use numeric::fused::compiled_once;
 use numeric::pair::PAIR_WIDTH;
 use numeric::rng::{Random, Stream};
 use numeric::{Lane, Mask, ScalarLane, Span};
-use theory::problems::bidirectional_rod::{MAX_CHANNELS, Sensor, Values};
+use theory::problems::bidirectional_rod::{BidirectionalValues, MAX_CHANNELS, Sensor};
 use theory::problems::{BidirectionalRod, Problem};
 use theory::rod::bidirectional::Combination;
 
@@ -31,17 +31,25 @@ pub fn draw(
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
     random: &mut Stream,
-) -> Draw<Values> {
+) -> Draw<BidirectionalValues> {
     compiled_once(
         #[inline(always)]
         || {
-            let alone = Alone(medium);
+            let alone = OneLane(medium);
             if let Some(even) = setup.fields.sampling.with_gaps() {
                 let begin = FlightWithGaps::new(0.0, even);
-                through(method, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
+                through(
+                    method,
+                    RodTracker::new(setup, 0.0, [begin, begin.from_end()], alone),
+                    random,
+                )
             } else {
                 let begin = FlightOverPieces::new(0.0, &setup.fields.sampling);
-                through(method, Tracker::new(setup, 0.0, [begin, begin.from_end()], alone), random)
+                through(
+                    method,
+                    RodTracker::new(setup, 0.0, [begin, begin.from_end()], alone),
+                    random,
+                )
             }
         },
     )
@@ -51,11 +59,11 @@ pub fn draw(
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
 fn through<L: ScalarLane, C: BothWays<L>>(
     method: Method,
-    mut tracker: Tracker<'_, L, C, impl Field<L>>,
+    mut tracker: RodTracker<'_, L, C, impl LaneFunctions<L>>,
     random: &mut Stream,
-) -> Draw<Values> {
+) -> Draw<BidirectionalValues> {
     let count = draw_each(method, &mut tracker, true, random);
-    let mut values = Values { at: [0.0; MAX_CHANNELS], count };
+    let mut values = BidirectionalValues { at: [0.0; MAX_CHANNELS], count };
     for (value, drawn) in values.at[..count].iter_mut().zip(tracker.values) {
         *value = drawn.double();
     }
@@ -63,9 +71,9 @@ fn through<L: ScalarLane, C: BothWays<L>>(
 }
 
 /// Lookups and exponentials of one lane.
-pub struct Alone<'a>(pub &'a Lookups<'a>);
+pub struct OneLane<'a>(pub &'a Lookups<'a>);
 
-impl<L: Lane> Field<L> for Alone<'_> {
+impl<L: Lane> LaneFunctions<L> for OneLane<'_> {
     #[inline(always)]
     fn extinction(&self, t: L) -> L {
         self.0.extinction(t)
@@ -81,7 +89,7 @@ impl<L: Lane> Field<L> for Alone<'_> {
 #[inline(always)]
 pub fn draw_each<L: Lane, C: BothWays<L>>(
     method: Method,
-    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    tracker: &mut RodTracker<'_, L, C, impl LaneFunctions<L>>,
     which: L::Mask,
     random: &mut impl Random<L>,
 ) -> usize {
@@ -123,7 +131,7 @@ pub fn draw_each<L: Lane, C: BothWays<L>>(
 #[inline(always)]
 pub fn make_paths<L: Lane, C: BothWays<L>>(
     method: Method,
-    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    tracker: &mut RodTracker<'_, L, C, impl LaneFunctions<L>>,
     [order, s]: [usize; 2],
     which: L::Mask,
     random: &mut impl Random<L>,
@@ -139,7 +147,7 @@ pub fn make_paths<L: Lane, C: BothWays<L>>(
 /// sensor.
 #[inline(always)]
 fn walk_for<L: Lane, C: BothWays<L>>(
-    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    tracker: &mut RodTracker<'_, L, C, impl LaneFunctions<L>>,
     [order, s]: [usize; 2],
     which: L::Mask,
     random: &mut impl Random<L>,
@@ -158,7 +166,7 @@ fn walk_for<L: Lane, C: BothWays<L>>(
 /// enough vertices, a hit reaches its end, and the transmittance is not 0.
 #[inline(always)]
 fn join<L: Lane, C: BothWays<L>>(
-    tracker: &mut Tracker<'_, L, C, impl Field<L>>,
+    tracker: &mut RodTracker<'_, L, C, impl LaneFunctions<L>>,
     method: Method,
     which: L::Mask,
     random: &mut impl Random<L>,
@@ -247,7 +255,7 @@ fn gather<L: Lane, P>(
 fn attenuate<L: Lane>(
     problem: &BidirectionalRod,
     method: Method,
-    (path, field): (&mut Path<L>, &impl Field<L>),
+    (path, field): (&mut Path<L>, &impl LaneFunctions<L>),
     which: L::Mask,
 ) {
     let is_connected = path.light >= 1 && path.light <= path.order + 1;

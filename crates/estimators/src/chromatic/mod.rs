@@ -7,7 +7,7 @@ pub mod page;
 
 use fearless_simd::Level;
 
-use crate::setup::Channels;
+use crate::setup::ChannelMedia;
 use crate::setup::walker::Walker;
 use crate::walks::hero::Weighing;
 use crate::walks::{self, Walk};
@@ -75,7 +75,7 @@ impl<'a> WalkerWeights<'a> {
 }
 
 /// A body in which every channel has a medium of its own; its estimators have one [`page`].
-pub trait Chromatic: Estimated<Fields = Channels, Value: problems::Channels> {
+pub trait Chromatic: Estimated<Fields = ChannelMedia, Value: problems::Channels> {
     /// The walk by steps; packs provide their [`Chromatic::fields`].
     fn walk<'a>(
         steps: impl WalkEvents,

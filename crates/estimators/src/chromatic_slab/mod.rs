@@ -16,12 +16,12 @@ use crate::{Refusal, Setup, estimators};
 use media::Batches;
 use theory::Prediction;
 use theory::problems::ChromaticSlab;
-use theory::slab::chromatic::Spectrum;
+use theory::slab::chromatic::SlabSpectrum;
 
 /// The slab as theory describes it.
-fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
+fn spectrum(setup: &Setup<ChromaticSlab>) -> SlabSpectrum<'_> {
     let media = setup.fields.iter().map(|channel| (&*channel.mesh, &channel.sampling));
-    Spectrum::new(&setup.problem, media.collect(), setup.distributions)
+    SlabSpectrum::new(&setup.problem, media.collect(), setup.distributions)
 }
 
 /// Checks that theory resolves the energies of all channels.
@@ -81,7 +81,7 @@ impl Chromatic for ChromaticSlab {
 }
 
 estimators! {
-    ChromaticSlab on Channels:
+    ChromaticSlab on ChannelMedia:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

@@ -3,8 +3,8 @@
 pub mod particle;
 pub mod splitting;
 
-use crate::space::tally::{Collision, Departure};
-use crate::space::{self, Particle, Tally, Walked};
+use crate::space::tally::{CollisionTally, Departure};
+use crate::space::{self, ParticleSettings, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Lane;
 use numeric::rng::Random;
@@ -15,13 +15,13 @@ use theory::space::predict;
 impl Walked for Furnace {
     type Tally<'a> = Energy<'a>;
 
-    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+    fn domain(setup: &Setup<Self>, particle: &ParticleSettings) -> Result<(), Refusal> {
         space::realisable(setup, particle)?;
         space::bounded(&space::walks(&setup.problem.scene, &setup.fields, particle))
     }
 
     /// Prediction: every draw is 1 on average.
-    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+    fn predict(setup: &Setup<Self>, particle: &ParticleSettings) -> Prediction {
         predict::furnace(&space::walks(&setup.problem.scene, &setup.fields, particle))
     }
 
@@ -29,7 +29,7 @@ impl Walked for Furnace {
         &self.scene
     }
 
-    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Energy<'a>, Draw> {
+    fn tally<'a>(setup: &'a Setup<Self>, _: &ParticleSettings) -> Result<Energy<'a>, Draw> {
         Ok(Energy(&setup.problem))
     }
 }
@@ -56,7 +56,7 @@ impl Tally for Energy<'_> {
     }
 
     #[inline(always)]
-    fn collided<L: Lane>(&self, [energy]: &mut [L; 1], at: &Collision<L>) {
+    fn collided<L: Lane>(&self, [energy]: &mut [L; 1], at: &CollisionTally<L>) {
         energy.add_where(at.inside, at.weight * at.ratio * at.albedo.one_minus());
     }
 

@@ -3,8 +3,8 @@
 pub mod particle;
 
 use crate::recipes::inequality;
-use crate::space::tally::Collision;
-use crate::space::{Particle, Tally, Walked};
+use crate::space::tally::CollisionTally;
+use crate::space::{ParticleSettings, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Lane;
 use numeric::geometry::Point;
@@ -18,8 +18,8 @@ use theory::{ParticleRule, Prediction};
 const MAX_COLLISIONS: f64 = 1e5;
 
 /// The probability that a tentative collision ends the walk, if it is equal for all of them.
-fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
-    let plain = *particle == Particle::of(particle.rule);
+fn end(setup: &Setup<InfiniteMedium>, particle: &ParticleSettings) -> Option<f64> {
+    let plain = *particle == ParticleSettings::of(particle.rule);
     let probabilities = particle.rule.probabilities(ratio(setup)?, setup.problem.albedo());
     plain.then_some(1.0 - probabilities.transmit - probabilities.scatter)
 }
@@ -33,7 +33,7 @@ impl Walked for InfiniteMedium {
     type Tally<'a> = Within<'a>;
 
     /// Checks that walks end and that no weight grows.
-    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+    fn domain(setup: &Setup<Self>, particle: &ParticleSettings) -> Result<(), Refusal> {
         use ParticleRule::{Analog, Terminating};
         let albedo = setup.problem.albedo();
         if albedo >= 1.0 {
@@ -67,7 +67,7 @@ impl Walked for InfiniteMedium {
         Ok(())
     }
 
-    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+    fn predict(setup: &Setup<Self>, particle: &ParticleSettings) -> Prediction {
         predict::infinite(&setup.problem, end(setup, particle), ratio(setup))
     }
 
@@ -75,7 +75,7 @@ impl Walked for InfiniteMedium {
         &self.scene
     }
 
-    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Within<'a>, Draw<Values>> {
+    fn tally<'a>(setup: &'a Setup<Self>, _: &ParticleSettings) -> Result<Within<'a>, Draw<Values>> {
         Ok(Within(&setup.problem))
     }
 }
@@ -115,7 +115,7 @@ impl Tally for Within<'_> {
     }
 
     #[inline(always)]
-    fn collided<L: Lane>(&self, sums: &mut [L; SUMS], at: &Collision<L>) {
+    fn collided<L: Lane>(&self, sums: &mut [L; SUMS], at: &CollisionTally<L>) {
         let real = at.weight * at.ratio;
         let [x, y, z] = at.place;
         let square = x * x + y * y + z * z;

@@ -3,25 +3,25 @@
 pub mod particle;
 pub mod splitting;
 
-use crate::space::tally::{Collision, Departure};
-use crate::space::{self, Particle, Tally, Walked};
+use crate::space::tally::{CollisionTally, Departure};
+use crate::space::{self, ParticleSettings, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Lane;
 use numeric::rng::Random;
 use theory::problems::lambertian::Values;
 use theory::problems::{Lambertian, Scene};
-use theory::space::Walks;
-use theory::space::predict::{self, Channels};
+use theory::space::WalkBound;
+use theory::space::predict::{self, WalkChannels};
 use theory::{ParticleRule, Prediction};
 
 /// Bounds on the walks of an experiment, and its channels.
-fn channels(setup: &Setup<Lambertian>, particle: &Particle) -> (Walks, Channels) {
+fn channels(setup: &Setup<Lambertian>, particle: &ParticleSettings) -> (WalkBound, WalkChannels) {
     let (scene, majorants) = (&setup.problem.scene, &*setup.fields);
     let walks = space::walks(scene, majorants, particle);
     // Where a = 0 and r = 1 a particle keeps no weight: that ends its walk even by this rule.
-    let goes_on =
-        *particle == Particle::of(ParticleRule::NonTerminating) && scene.albedo.range()[0] > 0.0;
-    let channels = Channels {
+    let goes_on = *particle == ParticleSettings::of(ParticleRule::NonTerminating)
+        && scene.albedo.range()[0] > 0.0;
+    let channels = WalkChannels {
         energy: walks.is_tame(),
         white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
         tentative: goes_on && majorants.content().is_some(),
@@ -32,7 +32,7 @@ fn channels(setup: &Setup<Lambertian>, particle: &Particle) -> (Walks, Channels)
 impl Walked for Lambertian {
     type Tally<'a> = Entering<'a>;
 
-    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+    fn domain(setup: &Setup<Self>, particle: &ParticleSettings) -> Result<(), Refusal> {
         space::realisable(setup, particle)?;
         let (walks, has) = channels(setup, particle);
         if has.white && predict::held(&setup.problem).is_none() {
@@ -43,7 +43,7 @@ impl Walked for Lambertian {
         if has.any() { Ok(()) } else { space::bounded(&walks) }
     }
 
-    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+    fn predict(setup: &Setup<Self>, particle: &ParticleSettings) -> Prediction {
         let (walks, has) = channels(setup, particle);
         predict::lambertian(&setup.problem, &walks, has, setup.fields.content())
     }
@@ -54,7 +54,7 @@ impl Walked for Lambertian {
 
     fn tally<'a>(
         setup: &'a Setup<Self>,
-        particle: &Particle,
+        particle: &ParticleSettings,
     ) -> Result<Entering<'a>, Draw<Values>> {
         Ok(Entering::new(&setup.problem, channels(setup, particle).1))
     }
@@ -68,7 +68,7 @@ pub struct Entering<'a> {
 }
 
 impl<'a> Entering<'a> {
-    fn new(problem: &'a Lambertian, has: Channels) -> Self {
+    fn new(problem: &'a Lambertian, has: WalkChannels) -> Self {
         let mut entering = Self { problem, channels: [0; 4], count: 0 };
         let has = [has.energy, has.white, has.white, has.tentative];
         for (sum, _) in has.into_iter().enumerate().filter(|(_, has)| *has) {
@@ -123,7 +123,7 @@ impl Tally for Entering<'_> {
     }
 
     #[inline(always)]
-    fn collided<L: Lane>(&self, sums: &mut [L; 4], at: &Collision<L>) {
+    fn collided<L: Lane>(&self, sums: &mut [L; 4], at: &CollisionTally<L>) {
         let [energy, _, collisions, tentative] = sums;
         let real = at.weight * at.ratio;
         tentative.count_where(at.inside);

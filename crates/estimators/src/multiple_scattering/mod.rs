@@ -4,7 +4,7 @@ pub mod particle;
 pub mod splitting;
 
 use crate::space::tally::Departure;
-use crate::space::{self, Particle, Tally, Walked};
+use crate::space::{self, ParticleSettings, Tally, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::Lane;
 use numeric::geometry::Point;
@@ -17,12 +17,12 @@ impl Walked for MultipleScattering {
     type Tally<'a> = Gathering<'a>;
 
     /// Checks σ̂ and the rule; the variance of draws may be infinite all the same, see `furnace`.
-    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+    fn domain(setup: &Setup<Self>, particle: &ParticleSettings) -> Result<(), Refusal> {
         space::realisable(setup, particle)
     }
 
     /// Prediction of the light that is seen beside the volume; through the volume the mean is unknown.
-    fn predict(setup: &Setup<Self>, _: &Particle) -> Prediction {
+    fn predict(setup: &Setup<Self>, _: &ParticleSettings) -> Prediction {
         predict::sky(&setup.problem)
     }
 
@@ -30,7 +30,7 @@ impl Walked for MultipleScattering {
         &self.scene
     }
 
-    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Gathering<'a>, Draw> {
+    fn tally<'a>(setup: &'a Setup<Self>, _: &ParticleSettings) -> Result<Gathering<'a>, Draw> {
         let problem = &*setup.problem;
         match problem.entry() {
             Some(entry) => Ok(Gathering { sky: &problem.sky, entry }),

@@ -42,7 +42,7 @@ use super::walk::{self, RuleAndRoulette};
 use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::catalogue::{Domain, Settings};
 use theory::problems::Rod;
-use theory::problems::rod::Quantity;
+use theory::problems::rod::RodQuantity;
 use theory::{ParticleRule, Prediction, rod};
 
 /// The non-terminating rule with roulette; σ̂ is its input.
@@ -77,7 +77,8 @@ impl Estimator<Rod> for Roulette {
     }
 
     fn domain(&self, setup: &Setup<Rod>) -> Result<(), Refusal> {
-        let is_score = |seen: &Quantity| matches!(seen, Quantity::Absorbed | Quantity::Flux(_));
+        let is_score =
+            |seen: &RodQuantity| matches!(seen, RodQuantity::Absorbed | RodQuantity::Flux(_));
         if setup.problem.channels.iter().any(is_score) {
             return Err(Refusal::mismatch(
                 "channels whose draws are at most 1",

@@ -23,7 +23,7 @@ use numeric::rng::Random;
 use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::problems::Rod;
-use theory::problems::rod::{MAX_PARTS, Quantity};
+use theory::problems::rod::{MAX_PARTS, RodQuantity};
 
 kept! {
     /// Particles on their way.
@@ -105,12 +105,12 @@ impl Walk for InRod<'_> {
         let Particle { is_forward, weight, order, absorbed, flux } = *particle;
         let of_those = |which| L::select(left & which, weight, weight.each(0.0));
         match self.rod.channels[channel] {
-            Quantity::Absorbed => absorbed,
-            Quantity::Flux(part) => L::one_of(&flux, part),
-            Quantity::Transmitted => of_those(is_forward),
-            Quantity::Reflected => of_those(!is_forward),
-            Quantity::TransmittedBy(n) => of_those(is_forward & order.equals(n as f64)),
-            Quantity::ReflectedBy(n) => of_those(!is_forward & order.equals(n as f64)),
+            RodQuantity::Absorbed => absorbed,
+            RodQuantity::Flux(part) => L::one_of(&flux, part),
+            RodQuantity::Transmitted => of_those(is_forward),
+            RodQuantity::Reflected => of_those(!is_forward),
+            RodQuantity::TransmittedBy(n) => of_those(is_forward & order.equals(n as f64)),
+            RodQuantity::ReflectedBy(n) => of_those(!is_forward & order.equals(n as f64)),
         }
     }
 }

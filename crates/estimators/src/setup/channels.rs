@@ -55,16 +55,16 @@ impl ChannelFields {
 }
 
 /// Medium and σ̂ of each channel; at least one channel.
-pub type Channels = Vec<ChannelFields>;
+pub type ChannelMedia = Vec<ChannelFields>;
 
-impl<P> Fields<P> for Channels {
+impl<P> Fields<P> for ChannelMedia {
     fn new(_: &P, parts: Parts) -> Result<Self, Refusal> {
         let channels = (1..).zip(parts.channels);
         channels.map(|(channel, part)| ChannelFields::new(channel, part)).collect()
     }
 }
 
-impl OnRay for Channels {
+impl OnRay for ChannelMedia {
     #[inline(always)]
     fn residual(&self) -> Residual<'_> {
         let ChannelFields { mesh, sampling, .. } = &self[0];

@@ -15,7 +15,7 @@ use crate::space::Walked;
 use media::{Control, Majorants, Piecewise, Volume};
 use theory::Mesh;
 
-pub use channels::{ChannelFields, Channels};
+pub use channels::{ChannelFields, ChannelMedia};
 pub use line::{ControlledLine, Line, OnRay};
 pub use residual::Residual;
 

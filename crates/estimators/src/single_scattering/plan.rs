@@ -23,7 +23,8 @@ use theory::Prediction;
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{
-    Camera, CameraTracking, Mis, Node, NullPaths, Scene, TechniqueMoments, Tracking, walks as along,
+    Camera, CameraTracking, Mis, NullPaths, RayNode, RayScene, TechniqueMoments, Tracking,
+    walks as along,
 };
 
 /// An estimator: its technique, and its shadow rays.
@@ -93,16 +94,16 @@ impl Vertices {
     /// The moments of points from the light, from the main part, or from both.
     fn points(self, setup: &Setup<SingleScattering>, shadow: Tracking) -> TechniqueMoments {
         let main = if self.main { MainPart::of(setup) } else { None };
-        let from_light = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
-        let from_main = |node: &Node| main.map_or(0.0, |main| main.density(node.s));
-        let sum = |node: &Node| {
+        let from_light = |node: &RayNode| setup.problem.equiangular_density_beyond(node.along);
+        let from_main = |node: &RayNode| main.map_or(0.0, |main| main.density(node.s));
+        let sum = |node: &RayNode| {
             let light = if self.light { from_light(node) } else { 0.0 };
             light + from_main(node)
         };
         let kinks = || if self.main { setup.fields.control.breaks() } else { Vec::new() };
         let scene = scene(setup, self.camera, shadow);
-        let of = |density: &dyn Fn(&Node) -> f64| {
-            let technique = theory::single::Technique {
+        let of = |density: &dyn Fn(&RayNode) -> f64| {
+            let technique = theory::single::ScoredDensity {
                 density,
                 gain: &|node| node.extinction * node.source / sum(node),
                 blur: &|node| main.map_or(DENSITY, |main| main.blur(node.s)),
@@ -129,10 +130,14 @@ pub fn at_collisions(
 }
 
 /// The setup for theory.
-fn scene(setup: &Setup<SingleScattering>, camera: CameraTracking, shadow: Tracking) -> Scene<'_> {
+fn scene(
+    setup: &Setup<SingleScattering>,
+    camera: CameraTracking,
+    shadow: Tracking,
+) -> RayScene<'_> {
     let camera =
         Camera::new(&setup.fields.mesh, &setup.fields.sampling, &setup.fields.control, camera);
-    Scene::new(&setup.problem, camera, shadow)
+    RayScene::new(&setup.problem, camera, shadow)
 }
 
 impl Plan {
@@ -182,7 +187,7 @@ impl Plan {
                 along::resampled(&scene(), self.shadow == Tracking::Exact).prediction()
             }
             Technique::Shared(points) => {
-                let density = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
+                let density = |node: &RayNode| setup.problem.equiangular_density_beyond(node.along);
                 along::at_points(&scene(), *points, &density).prediction()
             }
         }

@@ -5,7 +5,7 @@
 //! takes no random numbers in the meantime.
 
 use super::ray_setup::RaySetup;
-use crate::space::shadow::{Light, Shadows};
+use crate::space::shadow::{Shadows, VisibleLight};
 use crate::walks::TentativeCollision;
 use crate::{Refusal, Setup};
 use numeric::digits::{number, rounded};
@@ -108,7 +108,7 @@ impl<L: Lane> ToLight<L> {
             self.aims = none;
             let (origin, direction, distance) = ground.setup.problem.to_light(s);
             self.origin.set_where(casts, origin);
-            let light = Light { direction, share: one, distance };
+            let light = VisibleLight { direction, share: one, distance };
             let ends = exit::ends(&rays.bounds, [origin, direction], casts);
             let through = (rays, ground.fields.first());
             let ((which, light), _) =

@@ -16,18 +16,18 @@ use theory::collisions::particle::RatioRange;
 use theory::problems::Slab;
 use theory::problems::channels::End;
 use theory::problems::slab::Incidence;
-use theory::slab::{self, Answer, Existence, Pieces, Resolution, Walk};
+use theory::slab::{self, EnergyBounds, Existence, Pieces, Resolution, SlabWalk};
 use theory::{ParticleRule, Prediction};
 
 /// The walk of a rule, as theory describes it.
-fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
+fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> SlabWalk {
     let cut = setup.fields.mesh.refined(setup.fields.sampling.knots(), &|_, _| Vec::new());
     let ratio = |t: f64, sigma: f64| {
         if sigma == 0.0 { 0.0 } else { sigma / setup.fields.sampling.value(t) }
     };
     let incidence = setup.problem.incidence;
     let kinks = rule.kinks(setup.problem.albedo);
-    Walk {
+    SlabWalk {
         incidence,
         albedo: setup.problem.albedo,
         rule,
@@ -123,7 +123,7 @@ impl ByRule for Slab {
     fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
         let (slab, depth) = (&setup.problem, setup.fields.mesh.optical_depth());
         let answer = slab::cached(&slab.incidence, depth, slab.albedo);
-        walk_of(setup, rule).predict(&answer.unwrap_or(Answer::UNKNOWN))
+        walk_of(setup, rule).predict(&answer.unwrap_or(EnergyBounds::UNKNOWN))
     }
 
     fn fill(rule: ParticleRule, kernel: Kernel, setup: &Setup<Self>, request: Request) {

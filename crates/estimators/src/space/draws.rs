@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use super::particle::{Particle, Splitting};
+use super::particle::{ParticleSettings, Splitting};
 use super::splitting;
 use super::tally::Tally;
 use super::walk::InSpace;
@@ -30,7 +30,7 @@ pub fn draw<V: Channels>(walk: &impl Walk, random: &mut Stream) -> Draw<V> {
 /// Makes the draws of a request one after the other; it follows the particles that split off if it `SPLITS`.
 pub fn in_turn<V: Channels + AsRef<[f64]>, T: Tally, const SPLITS: bool>(
     tally: &T,
-    particle: &Particle,
+    particle: &ParticleSettings,
     world: (&Scene, &Majorants),
     request: Request,
 ) {
@@ -74,7 +74,7 @@ pub fn follow<L: ScalarLane, V: Channels, T: Tally, const SPLITS: bool>(
 pub fn packets<'a, T: Tally>(
     level: Level,
     tally: &T,
-    particle: &Particle,
+    particle: &ParticleSettings,
     (scene, majorants): (&Scene, &Majorants),
     request: Request<'a>,
 ) -> Option<Request<'a>> {

@@ -14,10 +14,10 @@ use super::{Refusal, Setup};
 use crate::recipes::inequality;
 use media::Majorants;
 use theory::problems::Scene;
-use theory::space::Walks;
+use theory::space::WalkBound;
 
 pub use numeric::geometry::exit;
-pub use particle::{Particle, Splitting};
+pub use particle::{ParticleSettings, Splitting};
 pub use tally::Tally;
 pub use walker::{Splitter, Walked, Walker};
 
@@ -25,8 +25,8 @@ pub use walker::{Splitter, Walked, Walker};
 const MAX_COLLISIONS: f64 = 1e4;
 
 /// The arguments of bounds on the walks of a particle.
-pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
-    Walks {
+pub fn walks(scene: &Scene, majorants: &Majorants, particle: &ParticleSettings) -> WalkBound {
+    WalkBound {
         rule: particle.rule,
         roulette: particle.roulette,
         splits: particle.splitting != Splitting::None,
@@ -41,7 +41,7 @@ pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks
 /// # Errors
 ///
 /// The violated inequality.
-pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &Particle) -> Result<(), Refusal> {
+pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &ParticleSettings) -> Result<(), Refusal> {
     let walks = walks(setup.problem.scene(), &setup.fields, particle);
     if walks.depth > MAX_COLLISIONS {
         let needs = "∫σ̂ ≤ 1e4 straight through the volume";
@@ -61,7 +61,7 @@ pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &Particle) -> Result<()
 /// # Errors
 ///
 /// Why no bound is known, and what would help.
-pub fn bounded(walks: &Walks) -> Result<(), Refusal> {
+pub fn bounded(walks: &WalkBound) -> Result<(), Refusal> {
     if walks.energy_variance().is_some() {
         return Ok(());
     }

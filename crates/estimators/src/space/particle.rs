@@ -28,7 +28,7 @@ impl Splitting {
 
 /// The settings of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Particle {
+pub struct ParticleSettings {
     /// The rule at a collision that does not split.
     pub rule: ParticleRule,
     /// w₀, the weight below which roulette is played.
@@ -37,7 +37,7 @@ pub struct Particle {
     pub splitting: Splitting,
 }
 
-impl Particle {
+impl ParticleSettings {
     /// A particle with a rule, and neither roulette nor splitting.
     pub fn of(rule: ParticleRule) -> Self {
         Self { rule, roulette: None, splitting: Splitting::None }

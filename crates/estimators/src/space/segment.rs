@@ -33,7 +33,7 @@ pub struct Segment<L: Lane> {
 
 /// A medium and σ̂ in it.
 #[derive(Clone, Copy)]
-pub struct Tracker<'a> {
+pub struct SampledMedium<'a> {
     /// The medium.
     pub scene: &'a Scene,
     /// σ̂.
@@ -55,7 +55,7 @@ fn each<L: Lane>(place: [L; 3], which: L::Mask, at: impl Fn(Point) -> f64) -> L 
     )
 }
 
-impl Tracker<'_> {
+impl SampledMedium<'_> {
     /// The albedo at places of the lanes in `which`.
     #[inline(always)]
     pub fn albedo<L: Lane>(self, place: [L; 3], which: L::Mask) -> L {

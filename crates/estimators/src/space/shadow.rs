@@ -34,7 +34,7 @@ pub struct ShadowRays<'a> {
 
 /// Light as seen from a point, or from eight.
 #[derive(Clone, Copy)]
-pub struct Light<L> {
+pub struct VisibleLight<L> {
     /// Direction of the light, a unit vector.
     pub direction: [L; 3],
     /// Share of the light without a medium.
@@ -60,19 +60,19 @@ impl<L: Lane> Aim<L> {
     /// Light in a drawn `direction`. A light with a surface has a `stop`: lanes that miss the surface, and its
     /// distance for the others. Without `stop` the light is infinitely far.
     #[inline(always)]
-    pub fn light(self, direction: [L; 3], stop: Option<(L::Mask, L)>) -> Light<L> {
+    pub fn light(self, direction: [L; 3], stop: Option<(L::Mask, L)>) -> VisibleLight<L> {
         let Self { cosine, share, distance, .. } = self;
         // A direction at the edge may miss by rounding: its ray then ends at the nearest point.
         let distance = match stop {
             Some((misses, near)) => L::select(misses, distance * cosine, near),
             None => distance.each(f64::INFINITY),
         };
-        Light { direction, share, distance }
+        VisibleLight { direction, share, distance }
     }
 }
 
 /// Lanes with light that shadow rays have found, and its transmittance.
-pub type Lit<L> = (<L as Lane>::Mask, L);
+pub type LitLanes<L> = (<L as Lane>::Mask, L);
 
 kept! {
     /// Shadow rays of walks, at most one of each, from where its flight begins.
@@ -163,10 +163,10 @@ impl<L: Lane> Shadows<L> {
         &mut self,
         (rays, fields): (&ShadowRays, Option<&Batches>),
         which: L::Mask,
-        light: &Light<L>,
+        light: &VisibleLight<L>,
         (origin, weight): ([L; 3], L),
         [from, to]: [L; 2],
-    ) -> (Lit<L>, L) {
+    ) -> (LitLanes<L>, L) {
         let one = weight.each(1.0);
         let (from, end) = (from.or_more(weight.each(0.0)), light.distance.or_less(to));
         let is_blocked = which & from.below(end);
@@ -206,7 +206,7 @@ impl<L: Lane> Shadows<L> {
         random: &mut impl Random<L>,
         (place, inside): ([L; 3], L::Mask),
         extinction: L,
-    ) -> Lit<L> {
+    ) -> LitLanes<L> {
         let zero = extinction.each(0.0);
         let extinction = match rays.bounds {
             Bounds::Sphere { centre, radius } => {

@@ -1,12 +1,12 @@
 //! Sums over the events of walks in space, as one formula for every lane type.
 
-use super::shadow::{Aim, Light, Lit, ShadowRays};
+use super::shadow::{Aim, LitLanes, ShadowRays, VisibleLight};
 use numeric::geometry::Point;
 use numeric::rng::Random;
 use numeric::{Kept, Lane};
 
 /// Tentative collisions.
-pub struct Collision<L: Lane> {
+pub struct CollisionTally<L: Lane> {
     /// Lanes with a collision.
     pub inside: L::Mask,
     /// The place.
@@ -77,7 +77,7 @@ pub trait Tally {
 
     /// Adds tentative collisions.
     #[inline(always)]
-    fn collided<L: Lane>(&self, found: &mut Self::Found<L>, at: &Collision<L>) {
+    fn collided<L: Lane>(&self, found: &mut Self::Found<L>, at: &CollisionTally<L>) {
         let _ = (found, at);
     }
 
@@ -123,7 +123,7 @@ pub trait Tally {
 
     /// The light of shadow rays from places, given the light that was aimed at.
     #[inline(always)]
-    fn light<L: Lane>(&self, place: [L; 3], aimed: Light<L>) -> Light<L> {
+    fn light<L: Lane>(&self, place: [L; 3], aimed: VisibleLight<L>) -> VisibleLight<L> {
         let _ = place;
         aimed
     }
@@ -136,7 +136,7 @@ pub trait Tally {
 
     /// Adds light that shadow rays have found, by its transmittance.
     #[inline(always)]
-    fn lit<L: Lane>(&self, found: &mut Self::Found<L>, light: Lit<L>, through: L) {
+    fn lit<L: Lane>(&self, found: &mut Self::Found<L>, light: LitLanes<L>, through: L) {
         let _ = (found, light, through);
     }
 
@@ -147,7 +147,7 @@ pub trait Tally {
         &self,
         found: &mut Self::Found<L>,
         at: &Scattering<L>,
-        (light, ends): (&Light<L>, [L; 2]),
+        (light, ends): (&VisibleLight<L>, [L; 2]),
         random: &mut impl Random<L>,
     ) -> L {
         let _ = (found, light, ends, random);

@@ -18,9 +18,9 @@
 //! Shadow rays and new directions cost more than a step. A lane that needs one stands still until several lanes of
 //! a pack do; meanwhile, the others go on.
 
-use super::particle::Particle;
+use super::particle::ParticleSettings;
 use super::shadow::{ShadowRays, Shadows};
-use super::tally::{Collision, Departure, Scattering, Tally};
+use super::tally::{CollisionTally, Departure, Scattering, Tally};
 use crate::walks::steps::roulette;
 use crate::walks::{Route, TentativeCollision, Walk};
 use media::sampling::BothWays;
@@ -81,7 +81,7 @@ const TOGETHER: u32 = 3;
 pub struct InSpace<'a, T> {
     tally: &'a T,
     /// The particle: its rule and roulette.
-    pub particle: Particle,
+    pub particle: ParticleSettings,
     /// The medium.
     pub scene: &'a Scene,
     ground: MajorantView<'a>,
@@ -104,7 +104,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
     /// The walk through a scene and its σ̂; packs provide the fields that they look up.
     pub fn new(
         tally: &'a T,
-        particle: Particle,
+        particle: ParticleSettings,
         (scene, majorants): (&'a Scene, &'a Majorants),
         fields: &'a [Batches<'a>],
     ) -> Self {
@@ -159,7 +159,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
         state: &mut State<L, T::Found<L>>,
         fields: &[L],
         random: &mut impl Random<L>,
-    ) -> Collision<L> {
+    ) -> CollisionTally<L> {
         let State { inside, place, sampling, .. } = *state;
         let extinction = fields[0];
         let albedo = match self.albedo {
@@ -175,7 +175,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
         let walks = !(casts | Self::waits(state));
         let (inside, left) = (inside & walks, walks & !inside);
         let Path { weight, unscattered, flights: Flights { direction, .. } } = state.path;
-        let at = Collision { inside, place, weight, ratio: extinction / sampling, albedo };
+        let at = CollisionTally { inside, place, weight, ratio: extinction / sampling, albedo };
         self.tally.collided(&mut state.found, &at);
         let departure = Departure { left, place, direction, weight, unscattered };
         self.tally.escaped(&mut state.found, &departure);
@@ -188,10 +188,10 @@ impl<'a, T: Tally> InSpace<'a, T> {
     pub fn decide<L: Lane>(
         &self,
         state: &mut State<L, T::Found<L>>,
-        at: &Collision<L>,
+        at: &CollisionTally<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let Collision { inside, place, weight, ratio, albedo } = *at;
+        let CollisionTally { inside, place, weight, ratio, albedo } = *at;
         let (zero, one, walks) = (weight.each(0.0), weight.each(1.0), state.ended);
         let probabilities = self.particle.rule.probabilities(ratio, albedo);
         // A number is taken only where more than one event is possible.
@@ -213,7 +213,11 @@ impl<'a, T: Tally> InSpace<'a, T> {
 
     /// Splits particles at collisions: the scattered ones continue in `state`, the transmitted ones are returned.
     #[inline(always)]
-    pub fn split<L: Lane>(&self, state: &mut State<L, T::Found<L>>, at: &Collision<L>) -> Path<L> {
+    pub fn split<L: Lane>(
+        &self,
+        state: &mut State<L, T::Found<L>>,
+        at: &CollisionTally<L>,
+    ) -> Path<L> {
         let straight = Path { weight: at.weight * at.ratio.one_minus(), ..state.path };
         state.path.weight = at.weight * at.albedo * at.ratio;
         state.ended = !at.inside;

@@ -1,6 +1,6 @@
 //! The estimators of problems in space: particles that walk by a rule, and particles that split.
 
-use super::{Particle, Tally, draws};
+use super::{ParticleSettings, Tally, draws};
 use crate::setup::Space;
 use crate::{Draw, Estimated, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::catalogue::Settings;
@@ -17,10 +17,10 @@ pub trait Walked: Estimated<Fields = Space, Value: Channels> {
     /// # Errors
     ///
     /// The requirement, and the value that violates it.
-    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal>;
+    fn domain(setup: &Setup<Self>, particle: &ParticleSettings) -> Result<(), Refusal>;
 
     /// The prediction for a draw.
-    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction;
+    fn predict(setup: &Setup<Self>, particle: &ParticleSettings) -> Prediction;
 
     /// The medium.
     fn scene(&self) -> &Scene;
@@ -32,13 +32,13 @@ pub trait Walked: Estimated<Fields = Space, Value: Channels> {
     /// All draws, if no walk is needed.
     fn tally<'a>(
         setup: &'a Setup<Self>,
-        particle: &Particle,
+        particle: &ParticleSettings,
     ) -> Result<Self::Tally<'a>, Draw<Self::Value>>;
 }
 
 /// A particle that walks; σ̂ in space is its input. With `SPLITS` it splits.
 #[derive(Debug, Clone)]
-pub struct Walker<const SPLITS: bool = false>(Particle);
+pub struct Walker<const SPLITS: bool = false>(ParticleSettings);
 
 /// A particle that walks and splits.
 pub type Splitter = Walker<true>;
@@ -47,7 +47,7 @@ impl<P: Walked, const SPLITS: bool> Estimator<P> for Walker<SPLITS> {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {
-        let read = if SPLITS { Particle::read_splitting } else { Particle::read };
+        let read = if SPLITS { ParticleSettings::read_splitting } else { ParticleSettings::read };
         read(settings).map(Self)
     }
 

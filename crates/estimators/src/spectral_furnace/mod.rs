@@ -97,7 +97,7 @@ impl Chromatic for SpectralFurnace {
 }
 
 estimators! {
-    SpectralFurnace on Channels:
+    SpectralFurnace on ChannelMedia:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

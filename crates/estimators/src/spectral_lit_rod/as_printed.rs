@@ -37,7 +37,7 @@
 //! ```
 #![cfg_attr(not(doctest), doc = media::draw_in_rust!())]
 
-use super::events::{Technique, WalkEvents};
+use super::events::{PathTechnique, WalkEvents};
 use super::pages;
 use crate::Estimator;
 use crate::Traits;
@@ -45,7 +45,7 @@ use crate::setup::heroes::Heroes;
 use crate::walks::hero::{LastPiece, Weighing};
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
-use theory::rod::lit::spectral::Tracker;
+use theory::rod::lit::spectral::LitTracker;
 
 /// Error of the printed algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,15 +97,15 @@ impl WalkEvents for AsPrinted {
     }
 
     #[inline(always)]
-    fn weighing(&self, found: Technique) -> Weighing {
+    fn weighing(&self, found: PathTechnique) -> Weighing {
         let right = Weighing::RIGHT;
-        if found == Technique::Connected {
+        if found == PathTechnique::Connected {
             let is_early = self.has(Error::LastPiece);
             let last_piece = if is_early { LastPiece::Nowhere } else { LastPiece::Everywhere };
             let share = if self.has(Error::Average) { 0.5 } else { 1.0 };
             Weighing { last_piece, share, ..right }
         } else {
-            let has_next_event = found == Technique::Hit && !self.has(Error::HitsAlone);
+            let has_next_event = found == PathTechnique::Hit && !self.has(Error::HitsAlone);
             Weighing { has_next_event, ..right }
         }
     }
@@ -130,5 +130,5 @@ impl Estimator<SpectralLitRod> for AsPrinted {
         Traits { settings, ..Traits::of(Self::INPUTS) }
     }
 
-    pages!(self => Heroes::Uniform, Tracker::Mis { casts: true });
+    pages!(self => Heroes::Uniform, LitTracker::Mis { casts: true });
 }

@@ -6,7 +6,7 @@ use numeric::Lane;
 
 /// Technique by which a path was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Technique {
+pub enum PathTechnique {
     /// A walk that was never scattered.
     Unscattered,
     /// A walk, after a scattering.
@@ -15,7 +15,7 @@ pub enum Technique {
     Connected,
 }
 
-impl Technique {
+impl PathTechnique {
     /// All techniques.
     pub const ALL: [Self; 3] = [Self::Unscattered, Self::Hit, Self::Connected];
 
@@ -45,8 +45,8 @@ pub trait WalkEvents: Sync {
 
     /// Weighting of paths of a technique.
     #[inline(always)]
-    fn weighing(&self, found: Technique) -> Weighing {
-        let has_next_event = self.has_shadow_rays() && found != Technique::Unscattered;
+    fn weighing(&self, found: PathTechnique) -> Weighing {
+        let has_next_event = self.has_shadow_rays() && found != PathTechnique::Unscattered;
         Weighing { has_next_event, ..Weighing::RIGHT }
     }
 

@@ -44,7 +44,7 @@ use numeric::rng::Random;
 use numeric::{Lane, kept};
 use theory::Prediction;
 use theory::problems::SpectralLitRod;
-use theory::rod::lit::spectral::{FULL, HITS, Tracker};
+use theory::rod::lit::spectral::{FULL, HITS, LitTracker};
 
 /// Independent tracking.
 #[derive(Debug, Clone)]
@@ -98,7 +98,7 @@ impl Estimator<SpectralLitRod> for Independent {
     }
 
     fn predict(&self, setup: &Setup<SpectralLitRod>) -> Prediction {
-        let tracker = Tracker::Independent { casts: self.is_full };
+        let tracker = LitTracker::Independent { casts: self.is_full };
         spectrum(setup, &self.heroes, tracker).predict(setup.distributions)
     }
 

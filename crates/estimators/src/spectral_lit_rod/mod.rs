@@ -16,7 +16,7 @@ use media::body::MAX_CHANNELS;
 use numeric::Lane;
 use theory::problems::SpectralLitRod;
 use theory::rod::lit;
-use theory::rod::lit::spectral::{Spectrum, Tracker};
+use theory::rod::lit::spectral::{LitTracker, RodSpectrum};
 
 /// Checks that each channel has one hero probability and a constant σ̂ ≥ σ_t, and that theory covers the rod.
 fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refusal> {
@@ -35,11 +35,11 @@ fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refu
 fn spectrum<'a>(
     setup: &'a Setup<SpectralLitRod>,
     heroes: &Heroes,
-    tracker: Tracker,
-) -> Spectrum<'a> {
+    tracker: LitTracker,
+) -> RodSpectrum<'a> {
     let media = setup.fields.iter().map(|channel| (&*channel.mesh, &channel.sampling));
     let heroes = heroes.of(setup.fields.len());
-    Spectrum::new(&setup.problem, media.collect(), heroes, tracker)
+    RodSpectrum::new(&setup.problem, media.collect(), heroes, tracker)
 }
 
 /// Albedos of all channels.
@@ -107,7 +107,7 @@ macro_rules! pages {
 use pages;
 
 estimators! {
-    SpectralLitRod on Channels:
+    SpectralLitRod on ChannelMedia:
     independent::Independent,
     spectral_mis::SpectralMis,
     spectral_tracking::SpectralTracking,

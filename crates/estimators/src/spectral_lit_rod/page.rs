@@ -6,7 +6,7 @@ use crate::setup::heroes::Heroes;
 use crate::{Estimator, Inputs, Traits};
 use media::catalogue::Settings;
 use theory::problems::SpectralLitRod;
-use theory::rod::lit::spectral::Tracker;
+use theory::rod::lit::spectral::LitTracker;
 
 /// The balance heuristic over heroes; with `CASTS` walks cast shadow rays.
 #[derive(Debug, Clone)]
@@ -36,5 +36,5 @@ impl<const CASTS: bool> Estimator<SpectralLitRod> for HeroMis<CASTS> {
         Traits { settings: self.heroes.label(), ..Traits::of(Inputs::SAMPLING) }
     }
 
-    pages!(self => self.heroes, Tracker::Mis { casts: CASTS });
+    pages!(self => self.heroes, LitTracker::Mis { casts: CASTS });
 }

@@ -48,7 +48,7 @@ use numeric::{Lane, kept};
 use theory::Prediction;
 use theory::colours::Chances;
 use theory::problems::SpectralLitRod;
-use theory::rod::lit::spectral::Tracker;
+use theory::rod::lit::spectral::LitTracker;
 
 /// Spectral tracking.
 #[derive(Debug, Clone)]
@@ -79,7 +79,7 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
     }
 
     fn predict(&self, setup: &Setup<SpectralLitRod>) -> Prediction {
-        let tracker = Tracker::Tracking(self.chances);
+        let tracker = LitTracker::Tracking(self.chances);
         spectrum(setup, &Heroes::Uniform, tracker).predict(setup.distributions)
     }
 

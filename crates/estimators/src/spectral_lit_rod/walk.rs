@@ -25,7 +25,7 @@
 //! to those of the hero, see [`Media::common`].
 
 use super::Albedos;
-use super::events::{Technique, WalkEvents};
+use super::events::{PathTechnique, WalkEvents};
 use crate::walks::hero::{
     HeroDistribution, LastPiece, Media, Weighing, number_of_hero, of_hero, or_of_hero,
 };
@@ -41,7 +41,7 @@ use theory::problems::ChannelValues as Values;
 use theory::problems::SpectralLitRod;
 
 /// Numbers of all channels.
-type Channels = [f64; MAX_CHANNELS];
+type PerChannel = [f64; MAX_CHANNELS];
 
 /// The walk of a hero to the emitter.
 pub struct ToEmitter<'a, S> {
@@ -50,10 +50,10 @@ pub struct ToEmitter<'a, S> {
     steps: &'a S,
     media: Media,
     law: HeroDistribution,
-    mean_free_paths: Channels,
+    mean_free_paths: PerChannel,
     albedos: Albedos<'a>,
     /// The probability to keep the direction by channel and hero.
-    forward: [Channels; MAX_CHANNELS],
+    forward: [PerChannel; MAX_CHANNELS],
     /// Weightings of paths: see [`Technique`].
     weighings: [Weighing; 3],
     casts: bool,
@@ -99,7 +99,7 @@ impl<'a, S: WalkEvents> ToEmitter<'a, S> {
             mean_free_paths,
             albedos,
             forward,
-            weighings: Technique::ALL.map(|found| steps.weighing(found)),
+            weighings: PathTechnique::ALL.map(|found| steps.weighing(found)),
             casts: steps.has_shadow_rays(),
         }
     }
@@ -310,7 +310,8 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
         path: &'a Particle<L>,
         some: &'a mut [L; SOME_LEFT],
     ) -> [&'a [L]; GROUPS] {
-        let found = L::select(path.connected, Technique::Connected.as_lane(path.hero), path.found);
+        let found =
+            L::select(path.connected, PathTechnique::Connected.as_lane(path.hero), path.found);
         *some = [path.hero, path.length, path.collisions, path.last, found];
         let (all, gains) = (..self.media.count, if S::GAINS { self.media.count } else { 0 });
         [&some[..], &path.weights[all], &path.phases[all], &path.nulls[all], &path.excess[..gains]]
@@ -429,7 +430,7 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
             self.turn(path, which, keeps);
         }
         path.is_forward ^= which & !keeps;
-        path.found.keep_where(which, Technique::Hit.as_lane(one));
+        path.found.keep_where(which, PathTechnique::Hit.as_lane(one));
     }
 
     /// Casts shadow rays of walks that are scattered.

@@ -9,7 +9,7 @@ pub mod walk;
 
 use crate::setup::Line;
 use crate::{Estimated, Refusal, Setup, estimators};
-use theory::colours::scatterers::Body;
+use theory::colours::scatterers::BodyEnergies;
 use theory::problems::SpectralRod;
 use theory::problems::channels::{ColourValues as Values, Colours};
 use theory::rod::spectral::Rods;
@@ -27,7 +27,7 @@ pub trait Coloured: Estimated<Value = Values, Fields = Line> {
     fn require_answer(setup: &Setup<Self>) -> Result<(), Refusal>;
 
     /// The body as theory describes it.
-    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
+    fn body(setup: &Setup<Self>) -> Box<dyn BodyEnergies + '_>;
 
     /// Geometry of the walks.
     fn place(&self) -> walk::Place<'_>;
@@ -42,7 +42,7 @@ impl Coloured for SpectralRod {
         Ok(())
     }
 
-    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
+    fn body(setup: &Setup<Self>) -> Box<dyn BodyEnergies + '_> {
         Box::new(Rods::new(&setup.problem, &setup.fields.mesh, &setup.fields.sampling))
     }
 

@@ -7,11 +7,11 @@ use crate::{Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::body::MAX_CHANNELS;
 use media::catalogue::Settings;
 use theory::Prediction;
-use theory::colours::scatterers::{Spectrum, Tracker};
+use theory::colours::scatterers::{BodySpectrum, BodyTracker};
 
 /// Walk of a hero, or of all channels together by one probability to be scattered.
 #[derive(Debug, Clone)]
-pub enum Walker {
+pub enum HeroOrJoint {
     /// The hero, by its distribution.
     Hero(Heroes),
     /// All channels: by the largest albedo and the largest share of absorption, or by the mean albedo.
@@ -23,7 +23,7 @@ pub enum Walker {
 
 /// An estimator of a kind.
 #[derive(Debug, Clone)]
-pub struct OfKind<const KIND: u8>(pub Walker);
+pub struct OfKind<const KIND: u8>(pub HeroOrJoint);
 
 /// `P_s`, the probability to be scattered of all channels together.
 #[inline(always)]
@@ -40,14 +40,14 @@ fn scatter(albedos: &[f64], maximum: bool) -> f64 {
 impl<const KIND: u8> walk::HeroWeights for OfKind<KIND> {
     #[inline(always)]
     fn heroes(&self) -> Option<&Heroes> {
-        if let Walker::Hero(heroes) = &self.0 { Some(heroes) } else { None }
+        if let HeroOrJoint::Hero(heroes) = &self.0 { Some(heroes) } else { None }
     }
 
     #[inline(always)]
     fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
         match self.0 {
-            Walker::Hero(_) => albedos[hero],
-            Walker::Together { maximum } => scatter(albedos, maximum),
+            HeroOrJoint::Hero(_) => albedos[hero],
+            HeroOrJoint::Together { maximum } => scatter(albedos, maximum),
         }
     }
 
@@ -55,8 +55,8 @@ impl<const KIND: u8> walk::HeroWeights for OfKind<KIND> {
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MAX_CHANNELS] {
         let count = albedos.len();
         let heroes = match &self.0 {
-            Walker::Hero(heroes) => heroes,
-            Walker::Together { maximum } => {
+            HeroOrJoint::Hero(heroes) => heroes,
+            HeroOrJoint::Together { maximum } => {
                 return walk::relative_to(albedos, scatter(albedos, *maximum), order);
             }
         };
@@ -82,21 +82,21 @@ impl<const KIND: u8> walk::HeroWeights for OfKind<KIND> {
 impl<const KIND: u8> OfKind<KIND> {
     /// The distribution of the hero: of all channels together theory takes equal heroes.
     fn distribution(&self) -> &Heroes {
-        if let Walker::Hero(heroes) = &self.0 { heroes } else { &Heroes::Uniform }
+        if let HeroOrJoint::Hero(heroes) = &self.0 { heroes } else { &Heroes::Uniform }
     }
 
     /// The spectrum of a setup, for predictions.
-    fn spectrum<'a, P: Coloured>(&self, setup: &'a Setup<P>) -> Spectrum<'a> {
+    fn spectrum<'a, P: Coloured>(&self, setup: &'a Setup<P>) -> BodySpectrum<'a> {
         let colours = setup.problem.colours();
         let tracker = match self.0 {
-            Walker::Together { maximum } => {
-                Tracker::Tracking { scatter: scatter(&colours.albedos, maximum) }
+            HeroOrJoint::Together { maximum } => {
+                BodyTracker::Tracking { scatter: scatter(&colours.albedos, maximum) }
             }
-            Walker::Hero(_) if KIND == INDEPENDENT => Tracker::Independent,
-            Walker::Hero(_) if KIND == HERO => Tracker::Hero,
-            Walker::Hero(_) => Tracker::Mis,
+            HeroOrJoint::Hero(_) if KIND == INDEPENDENT => BodyTracker::Independent,
+            HeroOrJoint::Hero(_) if KIND == HERO => BodyTracker::Hero,
+            HeroOrJoint::Hero(_) => BodyTracker::Mis,
         };
-        Spectrum::new(
+        BodySpectrum::new(
             P::body(setup),
             colours,
             self.distribution().of(colours.albedos.len()),
@@ -110,17 +110,17 @@ impl<P: Coloured, const KIND: u8> Estimator<P> for OfKind<KIND> {
 
     fn read(settings: &Settings) -> Option<Self> {
         if KIND != SPECTRAL_TRACKING {
-            return Some(Self(Walker::Hero(Heroes::read(settings)?)));
+            return Some(Self(HeroOrJoint::Hero(Heroes::read(settings)?)));
         }
         let word = settings.word_or("probabilities", &["average", "maximum"], "average")?;
-        Some(Self(Walker::Together { maximum: word == "maximum" }))
+        Some(Self(HeroOrJoint::Together { maximum: word == "maximum" }))
     }
 
     fn traits(&self) -> Traits {
         let settings = match &self.0 {
-            Walker::Hero(heroes) => heroes.label(),
-            Walker::Together { maximum: true } => "maximum".into(),
-            Walker::Together { maximum: false } => "average".into(),
+            HeroOrJoint::Hero(heroes) => heroes.label(),
+            HeroOrJoint::Together { maximum: true } => "maximum".into(),
+            HeroOrJoint::Together { maximum: false } => "average".into(),
         };
         Traits { settings, ..Traits::of(Inputs::SAMPLING) }
     }

@@ -28,7 +28,7 @@ use numeric::{Lane, Mask, kept};
 use theory::ParticleRule;
 use theory::colours::scatterers::Divergence;
 use theory::problems::channels::{ColourValues as Values, Colours, End};
-use theory::problems::slab::{Incidence, Light};
+use theory::problems::slab::{Incidence, IncidentLight};
 
 /// Geometry of the walks.
 #[derive(Clone, Copy)]
@@ -209,7 +209,7 @@ impl Walk for InBody<'_> {
             None => zero,
         };
         let light = match self.place {
-            Place::Rod(_) => Light::Collimated(1.0),
+            Place::Rod(_) => IncidentLight::Collimated(1.0),
             Place::Slab(incidence) => incidence.light,
         };
         let cosine = entering(light, diffuse, which, one, random);

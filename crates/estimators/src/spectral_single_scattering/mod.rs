@@ -115,7 +115,7 @@ fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Sha
 }
 
 estimators! {
-    SpectralSingleScattering on Channels:
+    SpectralSingleScattering on ChannelMedia:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

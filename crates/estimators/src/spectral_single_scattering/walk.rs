@@ -41,7 +41,7 @@ const LOST: f64 = -1.0;
 
 kept! {
     /// Walks to their scattering, and shadow rays from there.
-    pub struct Flight<L> {
+    pub struct ScatteringFlight<L> {
         /// Lanes on their way along the ray, lanes that have yet to cast a shadow ray, and lanes with one in
         /// flight.
         walks: L::Mask,
@@ -143,7 +143,7 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
     /// The probabilities to be scattered and to go straight on, given the hero's ratio and the ratios of all
     /// channels.
     #[inline(always)]
-    fn probabilities<L: Lane>(&self, path: &Flight<L>, own: L, ratios: &[L]) -> [L; 2] {
+    fn probabilities<L: Lane>(&self, path: &ScatteringFlight<L>, own: L, ratios: &[L]) -> [L; 2] {
         if ALL && let Some(probabilities) = self.walker.together() {
             let [passes, scatters, _] = probabilities.of_events(
                 self.media.count,
@@ -161,7 +161,7 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
     #[inline(always)]
     fn weigh<L: Lane>(
         &self,
-        path: &mut Flight<L>,
+        path: &mut ScatteringFlight<L>,
         [is_scattered, is_null]: [L::Mask; 2],
         [scatters, passes]: [L; 2],
         ratios: &[L],
@@ -192,7 +192,7 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
 
     /// Casts the shadow rays of the lanes in `which`; returns the lanes with rays that enter the medium.
     #[inline(always)]
-    fn cast<L: Lane>(&self, path: &mut Flight<L>, which: L::Mask) -> L::Mask {
+    fn cast<L: Lane>(&self, path: &mut ScatteringFlight<L>, which: L::Mask) -> L::Mask {
         let ([origin, direction], [from, to]) = self.shadows(which, path.s);
         path.origin.set_where(which, origin);
         path.direction.set_where(which, direction);
@@ -220,19 +220,24 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
 }
 
 impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
-    type State<L: Lane> = Flight<L>;
+    type State<L: Lane> = ScatteringFlight<L>;
 
     const IS_CHROMATIC: bool = true;
     const IN_SPACE: bool = true;
     const SCORES: Scores = Scores::Later;
 
     #[inline(always)]
-    fn begin<L: Lane>(&self, one: L, all: L::Mask, random: &mut impl Random<L>) -> Flight<L> {
+    fn begin<L: Lane>(
+        &self,
+        one: L,
+        all: L::Mask,
+        random: &mut impl Random<L>,
+    ) -> ScatteringFlight<L> {
         let (none, zero, ones) = (all & !all, one.each(0.0), [one; MAX_CHANNELS]);
         let s = one.each(self.setup.residual().mesh.support().from);
         // Lanes without a shadow ray look up σ_t where this one enters.
         let (origin, direction, _) = self.setup.problem.channels[0].to_light(s);
-        let mut path = Flight {
+        let mut path = ScatteringFlight {
             walks: none,
             aims: none,
             casts: none,
@@ -257,7 +262,7 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     #[inline(always)]
     fn restart<L: Lane>(
         &self,
-        path: &mut Flight<L>,
+        path: &mut ScatteringFlight<L>,
         which: L::Mask,
         one: L,
         random: &mut impl Random<L>,
@@ -289,20 +294,28 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     }
 
     #[inline(always)]
-    fn numbers<L: Lane>(&self, path: &mut Flight<L>, random: &mut impl Random<L>) -> [L; 2] {
+    fn numbers<L: Lane>(
+        &self,
+        path: &mut ScatteringFlight<L>,
+        random: &mut impl Random<L>,
+    ) -> [L; 2] {
         let depth = -random.ln_uniform_where(path.walks | path.casts);
         [depth, random.uniform_where(path.walks)]
     }
 
     #[inline(always)]
-    fn mean_free_path<L: Lane>(&self, path: &Flight<L>, _: &Route<impl BothWays<L>>) -> L {
+    fn mean_free_path<L: Lane>(
+        &self,
+        path: &ScatteringFlight<L>,
+        _: &Route<impl BothWays<L>>,
+    ) -> L {
         path.mean_free_path
     }
 
     #[inline(always)]
     fn fly<L: Lane>(
         &self,
-        path: &mut Flight<L>,
+        path: &mut ScatteringFlight<L>,
         route: &mut Route<impl BothWays<L>>,
         depth: L,
     ) -> L::Mask {
@@ -321,13 +334,13 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     #[inline(always)]
     fn collide<L: Lane>(
         &self,
-        path: &mut Flight<L>,
+        path: &mut ScatteringFlight<L>,
         _: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
         let (TentativeCollision { inside, t, number, .. }, one) = (*met, met.t.each(1.0));
-        let Flight { walks, casts, .. } = *path;
+        let ScatteringFlight { walks, casts, .. } = *path;
         if S::COUNTS {
             path.collisions.count_where(inside);
         }
@@ -380,7 +393,7 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     }
 
     #[inline(always)]
-    fn in_space<L: Lane>(&self, path: &Flight<L>) -> (L::Mask, [L; 3]) {
+    fn in_space<L: Lane>(&self, path: &ScatteringFlight<L>) -> (L::Mask, [L; 3]) {
         // Beyond the end there is no field to look up.
         let t = L::select(path.inside, path.t, path.end);
         (path.inside, along(path.origin, path.direction, t))
@@ -404,7 +417,7 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
     #[inline(always)]
     fn leaves<'a, L: Lane>(
         &self,
-        path: &'a Flight<L>,
+        path: &'a ScatteringFlight<L>,
         some: &'a mut [L; SOME_LEFT],
     ) -> [&'a [L]; GROUPS] {
         let count = self.media.count;

@@ -9,7 +9,7 @@ use super::slab::{in_channel, require_answer};
 use super::spectral_rod::Coloured;
 use super::spectral_rod::walk::Place;
 use crate::{Refusal, Setup, estimators};
-use ::theory::colours::scatterers::Body;
+use ::theory::colours::scatterers::BodyEnergies;
 use ::theory::problems::SpectralSlab;
 use ::theory::problems::channels::Colours;
 use ::theory::slab::chromatic::Slabs;
@@ -27,7 +27,7 @@ impl Coloured for SpectralSlab {
         })
     }
 
-    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
+    fn body(setup: &Setup<Self>) -> Box<dyn BodyEnergies + '_> {
         let (incidence, with_distributions) = (setup.problem.incidence, setup.distributions);
         let (mesh, sampling) = (&*setup.fields.mesh, &setup.fields.sampling);
         Box::new(Slabs { incidence, mesh, sampling, with_distributions })

@@ -13,7 +13,7 @@ use crate::estimators;
 use theory::problems::SpectralTransmittance;
 
 estimators! {
-    SpectralTransmittance on Channels:
+    SpectralTransmittance on ChannelMedia:
     independent::Independent,
     hero::Hero,
     spectral_tracking::SpectralTracking,

@@ -52,7 +52,7 @@
 use super::page::{Connected, Connecting, Method};
 use super::sharing::{SharedTechniques, Subpaths};
 use crate::setup::heuristic;
-use crate::space::Particle;
+use crate::space::ParticleSettings;
 use media::catalogue::Settings;
 use theory::ParticleRule;
 use theory::space::sphere::Techniques;
@@ -73,6 +73,6 @@ impl Connecting for OfSubpaths {
             .map(|word| if word == words[0] { Subpaths::Independent } else { Subpaths::Shared });
         let techniques = Techniques::Bidirectional(heuristic?);
         let sharing = SharedTechniques { techniques, shadow: None, subpaths };
-        subpaths.map(|_| Method { particle: Particle::of(ParticleRule::Analog), sharing })
+        subpaths.map(|_| Method { particle: ParticleSettings::of(ParticleRule::Analog), sharing })
     }
 }

@@ -24,9 +24,9 @@ use super::connect::{Seeker, aim, meets_light, share};
 use super::emission;
 use super::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
 use crate::space::connection;
-use crate::space::segment::Tracker;
-use crate::space::shadow::{Aim, Light, Lit, ShadowRays};
-use crate::space::tally::{Collision, Departure, Scattering, Tally};
+use crate::space::segment::SampledMedium;
+use crate::space::shadow::{Aim, LitLanes, ShadowRays, VisibleLight};
+use crate::space::tally::{CollisionTally, Departure, Scattering, Tally};
 use media::Majorants;
 use media::sampling::MajorantView;
 use numeric::geometry::exit::{self, dot, rows};
@@ -94,8 +94,8 @@ impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
         self.seeker.sphere
     }
 
-    fn tracker(&self) -> Tracker<'_> {
-        Tracker { scene: &self.sphere().scene, ground: &self.ground }
+    fn tracker(&self) -> SampledMedium<'_> {
+        SampledMedium { scene: &self.sphere().scene, ground: &self.ground }
     }
 
     /// True if densities include the probabilities of null collisions.
@@ -107,7 +107,7 @@ impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     #[inline(always)]
     fn weight<L: Lane>(&self, own: usize, lit: L, connected: L) -> L {
         let Some((_, heuristic)) = self.sharing.weights() else { return lit.each(1.0) };
-        let is_distant = matches!(self.sphere().light, ball::Light::Distant(_));
+        let is_distant = matches!(self.sphere().light, ball::BallLight::Distant(_));
         let hit = lit.each(if is_distant { 0.0 } else { 1.0 });
         if CONNECTS {
             return self.steps.weight(heuristic, own, [hit, lit, connected]);
@@ -129,7 +129,7 @@ impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     fn add_lit<L: Lane>(
         &self,
         found: &mut Vertices<L>,
-        (which, light): Lit<L>,
+        (which, light): LitLanes<L>,
         [through, chance]: [L; 2],
     ) {
         let one = light.each(1.0);
@@ -217,7 +217,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     #[inline(always)]
-    fn collided<L: Lane>(&self, found: &mut Vertices<L>, at: &Collision<L>) {
+    fn collided<L: Lane>(&self, found: &mut Vertices<L>, at: &CollisionTally<L>) {
         if self.has_nulls() {
             let chance = self.steps.chance(self.rule.probabilities(at.ratio, at.albedo).transmit);
             if CONNECTS {
@@ -285,8 +285,8 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
 
     fn parallel(&self) -> Option<Point> {
         match self.sphere().light {
-            ball::Light::Distant(direction) => Some(direction),
-            ball::Light::Environment | ball::Light::BlackSphere(_) => None,
+            ball::BallLight::Distant(direction) => Some(direction),
+            ball::BallLight::Environment | ball::BallLight::BlackSphere(_) => None,
         }
     }
 
@@ -300,12 +300,12 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     #[inline(always)]
-    fn light<L: Lane>(&self, place: [L; 3], aimed: Light<L>) -> Light<L> {
+    fn light<L: Lane>(&self, place: [L; 3], aimed: VisibleLight<L>) -> VisibleLight<L> {
         self.steps.light(self.sphere(), place, aimed)
     }
 
     #[inline(always)]
-    fn lit<L: Lane>(&self, found: &mut Vertices<L>, light: Lit<L>, through: L) {
+    fn lit<L: Lane>(&self, found: &mut Vertices<L>, light: LitLanes<L>, through: L) {
         self.add_lit(found, light, [through, through]);
     }
 
@@ -315,7 +315,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         &self,
         found: &mut Vertices<L>,
         at: &Scattering<L>,
-        (light, [from, to]): (&Light<L>, [L; 2]),
+        (light, [from, to]): (&VisibleLight<L>, [L; 2]),
         random: &mut impl Random<L>,
     ) -> L {
         let (from, end) = (from.or_more(to.each(0.0)), light.distance.or_less(to));
@@ -349,7 +349,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         let distance = dot(away, away).root();
         let (direction, is_apart) = normalised(away);
         let mut which = at.which & found.is_emitted & is_apart;
-        if let ball::Light::BlackSphere(core) = sphere.light {
+        if let ball::BallLight::BlackSphere(core) = sphere.light {
             let (misses, near) = exit::meets(sphere.centre, core, at.place, direction);
             which &= !self.steps.is_hidden(!misses & near.below(distance));
         }

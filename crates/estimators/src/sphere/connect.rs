@@ -44,15 +44,15 @@ fn to_centre<L: Lane>(sphere: &Sphere, [x, y, z]: [L; 3]) -> ([L; 3], L) {
 pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> Aim<L> {
     let one = number.each(1.0);
     match sphere.light {
-        ball::Light::Environment => {
+        ball::BallLight::Environment => {
             let (axis, distance) = (UP.each(one), one.each(f64::INFINITY));
             Aim { axis, cosine: number * 2.0 - 1.0, share: one, distance }
         }
-        ball::Light::Distant(direction) => {
+        ball::BallLight::Distant(direction) => {
             let (axis, distance) = (direction.each(one), one.each(f64::INFINITY));
             Aim { axis, cosine: one, share: one, distance }
         }
-        ball::Light::BlackSphere(core) => {
+        ball::BallLight::BlackSphere(core) => {
             let ([x, y, z], distance) = to_centre(sphere, place);
             let cone = cone(core, distance);
             let (cosine, scale) = (one - number * cone, one / distance);
@@ -65,8 +65,8 @@ pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> Aim<L> {
 #[inline(always)]
 pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
     match sphere.light {
-        ball::Light::BlackSphere(core) => cone(core, to_centre(sphere, place).1) * 0.5,
-        ball::Light::Environment | ball::Light::Distant(_) => place[0].each(1.0),
+        ball::BallLight::BlackSphere(core) => cone(core, to_centre(sphere, place).1) * 0.5,
+        ball::BallLight::Environment | ball::BallLight::Distant(_) => place[0].each(1.0),
     }
 }
 
@@ -74,9 +74,9 @@ pub fn share<L: Lane>(sphere: &Sphere, place: [L; 3]) -> L {
 #[inline(always)]
 pub fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     match sphere.light {
-        ball::Light::Environment => at.left,
-        ball::Light::Distant(_) => at.left & !at.left,
-        ball::Light::BlackSphere(core) => {
+        ball::BallLight::Environment => at.left,
+        ball::BallLight::Distant(_) => at.left & !at.left,
+        ball::BallLight::BlackSphere(core) => {
             let middle = 0.5 * (core + sphere.radius);
             let distance = sphere.centre.square_to(at.place, 1.0).root();
             at.left & distance.below(distance.each(middle))
@@ -124,8 +124,8 @@ impl Tally for Seeker<'_> {
 
     fn core(&self) -> Option<(Point, f64)> {
         match self.sphere.light {
-            ball::Light::BlackSphere(radius) => Some((self.sphere.centre, radius)),
-            ball::Light::Environment | ball::Light::Distant(_) => None,
+            ball::BallLight::BlackSphere(radius) => Some((self.sphere.centre, radius)),
+            ball::BallLight::Environment | ball::BallLight::Distant(_) => None,
         }
     }
 }

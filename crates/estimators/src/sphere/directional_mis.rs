@@ -43,7 +43,7 @@
 use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;
 use crate::setup::heuristic;
-use crate::space::Particle;
+use crate::space::ParticleSettings;
 use crate::space::connection;
 use media::catalogue::Settings;
 use theory::light::Densities;
@@ -58,7 +58,7 @@ pub struct OfDirections;
 
 impl Connecting for OfDirections {
     fn read(settings: &Settings) -> Option<Method> {
-        let particle = Particle::read(settings);
+        let particle = ParticleSettings::read(settings);
         let shadow = connection::read_shadow(settings);
         let heuristic = heuristic::read(settings);
         let techniques = Techniques::Mis(Densities::Directional, heuristic?);

@@ -17,13 +17,13 @@ use numeric::geometry::exit::along;
 use numeric::geometry::frame::turned_lanes;
 use numeric::rng::Random;
 use theory::problems::Sphere;
-use theory::problems::ball::Light;
+use theory::problems::ball::BallLight;
 
 /// ρ, the radius of the surface that light comes from, or through.
 pub fn radius(sphere: &Sphere) -> f64 {
     match sphere.light {
-        Light::BlackSphere(core) => core,
-        Light::Environment | Light::Distant(_) => sphere.radius,
+        BallLight::BlackSphere(core) => core,
+        BallLight::Environment | BallLight::Distant(_) => sphere.radius,
     }
 }
 
@@ -50,14 +50,14 @@ pub fn rays<L: Lane>(
 ) -> [[L; 3]; 2] {
     let (normal, direction) = match sphere.light {
         // A point of the disc is the foot of one of the sphere: by Lambert's law all of them are equally probable.
-        Light::Distant(towards) => {
+        BallLight::Distant(towards) => {
             (lambert(towards.each(one), cosine, which, random), (towards * -1.0).each(one))
         }
         light => {
             let height = random.uniform_where(which) * 2.0 - 1.0;
             let normal = turned_lanes(UP.each(one), height, random.uniform_where(which));
             let [x, y, z] = normal;
-            let is_outwards = matches!(light, Light::BlackSphere(_));
+            let is_outwards = matches!(light, BallLight::BlackSphere(_));
             let axis = if is_outwards { normal } else { [x * -1.0, y * -1.0, z * -1.0] };
             (normal, lambert(axis, cosine, which, random))
         }

@@ -43,7 +43,7 @@
 use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;
 use crate::setup::heuristic;
-use crate::space::Particle;
+use crate::space::ParticleSettings;
 use media::catalogue::Settings;
 use theory::light::Densities;
 use theory::single::Tracking;
@@ -58,7 +58,7 @@ pub struct OfPaths;
 
 impl Connecting for OfPaths {
     fn read(settings: &Settings) -> Option<Method> {
-        let particle = Particle::read(settings);
+        let particle = ParticleSettings::read(settings);
         let shadow = settings.word_or("shadow", &["ratio", "exact"], "ratio");
         let heuristic = heuristic::read(settings);
         let shadow = (shadow? == "exact").then_some(Tracking::Exact);

@@ -11,10 +11,10 @@ pub mod page;
 pub mod particle;
 pub mod sharing;
 
-use crate::space::{self, Particle, Walked};
+use crate::space::{self, ParticleSettings, Walked};
 use crate::{Draw, Refusal, Setup, estimators};
 use numeric::digits::rounded;
-use theory::problems::ball::Light;
+use theory::problems::ball::BallLight;
 use theory::problems::{self, Sphere};
 use theory::single::Tracking;
 use theory::space::sphere::predict;
@@ -50,7 +50,7 @@ fn unknown(sphere: &Sphere) -> Refusal {
 }
 
 /// Checks that a rule is valid, that its variance has a bound, and that the expected value is known.
-fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
+fn realisable(setup: &Setup<Sphere>, particle: &ParticleSettings) -> Result<(), Refusal> {
     let sphere = &setup.problem;
     space::realisable(setup, particle)?;
     let walks = space::walks(&sphere.scene, &setup.fields, particle);
@@ -70,7 +70,11 @@ fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal>
 /// # Errors
 ///
 /// The violated inequality.
-fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Result<(), Refusal> {
+fn connected(
+    setup: &Setup<Sphere>,
+    particle: &ParticleSettings,
+    shadow: Tracking,
+) -> Result<(), Refusal> {
     realisable(setup, particle)?;
     let sphere = &setup.problem;
     if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
@@ -98,15 +102,15 @@ impl Walked for Sphere {
     type Tally<'a> = Seeker<'a>;
 
     /// Requires a light that a walk can hit.
-    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
-        if matches!(setup.problem.light, Light::Distant(_)) {
+    fn domain(setup: &Setup<Self>, particle: &ParticleSettings) -> Result<(), Refusal> {
+        if matches!(setup.problem.light, BallLight::Distant(_)) {
             let needs = "a light that a walk can meet";
             return Err(Refusal::mismatch(needs, "a distant light is met with chance 0"));
         }
         realisable(setup, particle)
     }
 
-    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+    fn predict(setup: &Setup<Self>, particle: &ParticleSettings) -> Prediction {
         let is_chance = matches!(particle.rule, ParticleRule::Analog | ParticleRule::Terminating);
         predict::hits(&setup.problem, is_chance && particle.roulette.is_none())
     }
@@ -115,7 +119,7 @@ impl Walked for Sphere {
         &self.scene
     }
 
-    fn tally<'a>(setup: &'a Setup<Self>, _: &Particle) -> Result<Self::Tally<'a>, Draw> {
+    fn tally<'a>(setup: &'a Setup<Self>, _: &ParticleSettings) -> Result<Self::Tally<'a>, Draw> {
         Ok(Seeker { sphere: &setup.problem })
     }
 }

@@ -40,7 +40,7 @@
 
 use super::page::{Connected, Connecting, Method};
 use super::sharing::SharedTechniques;
-use crate::space::Particle;
+use crate::space::ParticleSettings;
 use crate::space::connection;
 use media::catalogue::Settings;
 use theory::space::sphere::Techniques;
@@ -54,7 +54,7 @@ pub struct OfNextEvent;
 
 impl Connecting for OfNextEvent {
     fn read(settings: &Settings) -> Option<Method> {
-        let particle = Particle::read(settings);
+        let particle = ParticleSettings::read(settings);
         let shadow = Some(connection::read_shadow(settings)?);
         let sharing =
             SharedTechniques { techniques: Techniques::NextEvent, shadow, subpaths: None };

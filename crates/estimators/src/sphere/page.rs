@@ -9,7 +9,7 @@ use super::sharing::{Correct, SharedTechniques, Subpaths, WalkEvents};
 use super::{connected, realisable};
 use crate::space::connection;
 use crate::space::walk::InSpace;
-use crate::space::{Particle, draws};
+use crate::space::{ParticleSettings, draws};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits, walks};
 use media::Majorants;
 use media::catalogue::Settings;
@@ -17,7 +17,7 @@ use numeric::rng::Stream;
 use theory::Prediction;
 use theory::light::Heuristic;
 use theory::problems::Sphere;
-use theory::problems::ball::Light;
+use theory::problems::ball::BallLight;
 use theory::single::Tracking;
 use theory::space::sphere::{Techniques, predict};
 
@@ -25,7 +25,7 @@ use theory::space::sphere::{Techniques, predict};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Method {
     /// The particle.
-    pub particle: Particle,
+    pub particle: ParticleSettings,
     /// The techniques that share the vertices of a walk.
     pub sharing: SharedTechniques,
 }
@@ -120,7 +120,7 @@ impl<P: Connecting> Estimator<Sphere> for Connected<P> {
 
     fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
         let SharedTechniques { techniques, shadow, subpaths } = self.0.sharing;
-        let is_distant = matches!(setup.problem.light, Light::Distant(_));
+        let is_distant = matches!(setup.problem.light, BallLight::Distant(_));
         let techniques = match subpaths {
             Some(Subpaths::Shared) => return predict::by_pilots(&setup.problem),
             Some(Subpaths::Independent) if is_distant => return predict::by_pilots(&setup.problem),

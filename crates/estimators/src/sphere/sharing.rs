@@ -1,6 +1,6 @@
 //! Techniques that share the vertices of a walk through a ball, and the steps of their scores.
 
-use crate::space::shadow::Light;
+use crate::space::shadow::VisibleLight;
 use media::Majorants;
 use numeric::{Lane, Mask};
 use theory::ParticleRule;
@@ -60,7 +60,12 @@ impl SharedTechniques {
 pub trait WalkEvents: Copy {
     /// The light of shadow rays from places, given the right one.
     #[inline(always)]
-    fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
+    fn light<L: Lane>(
+        &self,
+        sphere: &Sphere,
+        place: [L; 3],
+        right: VisibleLight<L>,
+    ) -> VisibleLight<L> {
         let _ = (sphere, place);
         right
     }

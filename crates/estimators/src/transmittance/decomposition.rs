@@ -89,7 +89,7 @@ impl Estimator<Transmittance> for Decomposition {
 
 kept! {
     /// A walk through the residual.
-    pub struct Flight<L> {
+    pub struct ResidualFlight<L> {
         /// Lanes with the control's flight as their next step, which makes no lookup.
         begins: L::Mask,
         /// The end of the control's flight.
@@ -129,20 +129,20 @@ impl Residual {
 }
 
 impl Walk for Residual {
-    type State<L: Lane> = Flight<L>;
+    type State<L: Lane> = ResidualFlight<L>;
 
     const IS_FIXED: bool = true;
     const PAUSES: bool = true;
 
     #[inline(always)]
-    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Flight<L> {
-        Flight { begins: one.at_most(one), stop: one.each(self.begin) }
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> ResidualFlight<L> {
+        ResidualFlight { begins: one.at_most(one), stop: one.each(self.begin) }
     }
 
     #[inline(always)]
     fn fly<L: Lane>(
         &self,
-        flight: &mut Flight<L>,
+        flight: &mut ResidualFlight<L>,
         route: &mut Route<impl BothWays<L>>,
         depth: L,
     ) -> L::Mask {
@@ -158,7 +158,7 @@ impl Walk for Residual {
     #[inline(always)]
     fn collide<L: Lane>(
         &self,
-        flight: &mut Flight<L>,
+        flight: &mut ResidualFlight<L>,
         _: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
@@ -171,7 +171,7 @@ impl Walk for Residual {
     }
 
     #[inline(always)]
-    fn value<L: Lane>(&self, flight: &Flight<L>, left: L::Mask, _: usize) -> L {
+    fn value<L: Lane>(&self, flight: &ResidualFlight<L>, left: L::Mask, _: usize) -> L {
         let is_stopped = flight.stop.below(flight.stop.each(self.end));
         L::select(left & !is_stopped, flight.stop.each(self.unit), flight.stop.each(0.0))
     }

@@ -33,7 +33,7 @@ use crate::walks::{self, Route, TentativeCollision, Walk};
 use crate::{Draw, Estimator, Inputs, Kernel, Refusal, Request, Setup, Traits};
 use media::sampling::BothWays;
 use numeric::rng::Random;
-use numeric::{Kept, Lane, Row, kept};
+use numeric::{CacheRow, Kept, Lane, kept};
 use theory::Prediction;
 use theory::collisions::rules::Null;
 use theory::problems::Transmittance;
@@ -91,7 +91,7 @@ kept! {
 #[derive(Clone, Copy)]
 pub struct Segments<'a> {
     /// Beginning, end and mean free path of each segment.
-    rows: &'a [Row],
+    rows: &'a [CacheRow],
     /// The value of walks that pass.
     unit: f64,
 }

@@ -35,13 +35,13 @@ use crate::{Setup, scored};
 use numeric::Lane;
 use theory::prediction::raw::binomial;
 use theory::problems::Transmittance;
-use theory::ray::volterra::{ORDERS, Source, power};
+use theory::ray::volterra::{ORDERS, ScoreMoments, power};
 
 /// The next-flight estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone, Copy)]
 pub struct NextFlight;
 
-impl Source for NextFlight {
+impl ScoreMoments for NextFlight {
     fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64 {
         let mixed = (1..k).map(|j| binomial(k, j) * power(v, k - j) * lower[j - 1]);
         power(v, k) + mixed.sum::<f64>()

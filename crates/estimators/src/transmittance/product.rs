@@ -77,14 +77,14 @@ impl<'a, R> Product<'a, R> {
 
 kept! {
     /// A particle of a product estimator.
-    pub struct Particle<L> {
+    pub struct ProductParticle<L> {
         weight: L,
         invariant: Invariant<L>,
     }
 }
 
 impl<R: Collision> Walk for Product<'_, R> {
-    type State<L: Lane> = Particle<L>;
+    type State<L: Lane> = ProductParticle<L>;
 
     const DECIDES: bool = R::DECIDES;
     const IS_FIXED: bool = true;
@@ -92,15 +92,15 @@ impl<R: Collision> Walk for Product<'_, R> {
     const INLINES_GRID: bool = !R::DECIDES;
 
     #[inline(always)]
-    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> Particle<L> {
+    fn begin<L: Lane>(&self, one: L, _: L::Mask, _: &mut impl Random<L>) -> ProductParticle<L> {
         let weight = one.each(self.begin);
-        Particle { weight, invariant: Invariant::open(weight) }
+        ProductParticle { weight, invariant: Invariant::open(weight) }
     }
 
     #[inline(always)]
     fn restart<L: Lane>(
         &self,
-        particle: &mut Particle<L>,
+        particle: &mut ProductParticle<L>,
         which: L::Mask,
         _: L,
         _: &mut impl Random<L>,
@@ -112,7 +112,7 @@ impl<R: Collision> Walk for Product<'_, R> {
     #[inline(always)]
     fn collide<L: Lane>(
         &self,
-        particle: &mut Particle<L>,
+        particle: &mut ProductParticle<L>,
         route: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         _: &mut impl Random<L>,
@@ -123,7 +123,7 @@ impl<R: Collision> Walk for Product<'_, R> {
         let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
         let goes_on =
             if R::DECIDES { inside & !self.rule.absorption(&met, number) } else { inside };
-        let Particle { weight, invariant } = particle;
+        let ProductParticle { weight, invariant } = particle;
         // In walks that end, too: the restart overwrites them.
         invariant.take(*weight, self.rule.unbiased_weight(ratio, outcome.survival));
         *weight = *weight * outcome.weight;
@@ -131,13 +131,13 @@ impl<R: Collision> Walk for Product<'_, R> {
     }
 
     #[inline(always)]
-    fn value<L: Lane>(&self, particle: &Particle<L>, left: L::Mask, _: usize) -> L {
+    fn value<L: Lane>(&self, particle: &ProductParticle<L>, left: L::Mask, _: usize) -> L {
         let weight = particle.weight;
         if R::DECIDES { L::select(left, weight, weight.each(0.0)) } else { weight }
     }
 
     #[inline(always)]
-    fn defect<L: Lane>(&self, particle: &Particle<L>, _: L) -> L {
+    fn defect<L: Lane>(&self, particle: &ProductParticle<L>, _: L) -> L {
         particle.invariant.defect(particle.weight)
     }
 }

@@ -33,13 +33,13 @@ use crate::{Setup, scored};
 use numeric::Lane;
 use theory::prediction::raw::binomial;
 use theory::problems::Transmittance;
-use theory::ray::volterra::{ORDERS, Source, power};
+use theory::ray::volterra::{ORDERS, ScoreMoments, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone, Copy)]
 pub struct UnidirectionalMis;
 
-impl Source for UnidirectionalMis {
+impl ScoreMoments for UnidirectionalMis {
     fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64 {
         let u = v / (1.0 + v);
         let mixed = (1..k).map(|j| binomial(k, j) * power(u, k - j) * lower[j - 1]);

@@ -36,7 +36,7 @@ struct Pack<L: Lane, C> {
 
 /// Numbers of eight finished draws. They are outside the pack: a compiler keeps the pack in registers only if none
 /// of its fields needs a drop.
-struct Rows {
+struct FinishedDraws {
     values: Vec<[f64; WIDTH]>,
     /// Numbers that eight walks leave, of which some have ended.
     left: Vec<[f64; WIDTH]>,
@@ -119,7 +119,7 @@ impl<L: Lane, C: BothWays<L>> Pack<L, C> {
 
     /// Stores the events of a pack's walks that score often.
     #[inline(always)]
-    fn score<W: Walk>(&self, walk: &W, state: &W::State<L>, pack: usize, rows: &mut Rows) {
+    fn score<W: Walk>(&self, walk: &W, state: &W::State<L>, pack: usize, rows: &mut FinishedDraws) {
         let which = walk.scores(state, !self.goes_on);
         if which.any() {
             let mut some = [self.from; SOME_LEFT];
@@ -135,7 +135,7 @@ impl<L: Lane, C: BothWays<L>> Pack<L, C> {
         walk: &W,
         state: &W::State<L>,
         (pack, ended): (usize, u64),
-        rows: &mut Rows,
+        rows: &mut FinishedDraws,
         (slots, buffer): (&mut Slots, &mut DrawBuffer),
     ) -> u64 {
         if W::SCORES == Scores::AtOnce {
@@ -174,7 +174,7 @@ impl<L: Lane, C: BothWays<L>> Pack<L, C> {
     }
 }
 
-impl Rows {
+impl FinishedDraws {
     /// Memory for the numbers that the walks of a request leave.
     #[inline(always)]
     fn new<L: Lane, W: Walk>(
@@ -345,7 +345,7 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
     let (one, all) = (simd.splat(1.0), simd.mask(u64::MAX));
     let mut state = walk.begin(one, all, &mut first);
     let mut other_state = walk.begin(one, all, &mut second);
-    let mut rows = Rows::new::<S::Pack, W>(&walk, &state, one, (count, &mut *buffer));
+    let mut rows = FinishedDraws::new::<S::Pack, W>(&walk, &state, one, (count, &mut *buffer));
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
     let none = [simd.splat(0.0); MAX_CHANNELS];
     let (mut channels, mut other_channels) = (none, none);

@@ -141,7 +141,7 @@ pub fn packets_in_space<'r>(
     walk: &impl Walk,
     request: Request<'r>,
 ) -> Option<Request<'r>> {
-    pack::on(level, InSpace { walk, request }).err().map(|task| task.request)
+    pack::on(level, DrawsInSpace { walk, request }).err().map(|task| task.request)
 }
 
 /// Implements the draws of a page by a walk on its setup, as in `drawn!(self, setup: LitRod => Walk::of(setup))`. A
@@ -251,12 +251,12 @@ impl<W: Walk> Task for SideBySide<'_, '_, W> {
     }
 }
 
-struct InSpace<'a, 'r, W> {
+struct DrawsInSpace<'a, 'r, W> {
     walk: &'a W,
     request: Request<'r>,
 }
 
-impl<W: Walk> Task for InSpace<'_, '_, W> {
+impl<W: Walk> Task for DrawsInSpace<'_, '_, W> {
     type Output = ();
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use crate::Estimated;
 use crate::setup::heroes::Heroes;
-use crate::setup::{Channels, Setup};
+use crate::setup::{ChannelMedia, Setup};
 use media::body::MAX_CHANNELS;
 use numeric::Lane;
 
@@ -83,7 +83,10 @@ pub struct Media {
 impl Media {
     /// Channels of a setup, with the probabilities of heroes.
     #[inline(always)]
-    pub fn new<P: Estimated<Fields = Channels>>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
+    pub fn new<P: Estimated<Fields = ChannelMedia>>(
+        setup: &Setup<P>,
+        probabilities: &[f64],
+    ) -> Self {
         let (none, count) = ([0.0; MAX_CHANNELS], setup.fields.len());
         let is_common = setup.fields.iter().all(|c| c.majorant == setup.fields[0].majorant);
         let mut media =

@@ -4,7 +4,7 @@ use numeric::pack::{Hardware, Lanes, PackedWords, WIDTH};
 use numeric::rng::{LANES, Stream, Streams, Xoshiro};
 
 /// The streams of a pack.
-pub type Numbers<S> = Xoshiro<<S as Hardware>::Words>;
+pub type PackStreams<S> = Xoshiro<<S as Hardware>::Words>;
 
 /// Draws that each lane has made and has to make.
 pub struct Slots {

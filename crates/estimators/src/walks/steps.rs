@@ -2,21 +2,21 @@
 
 use numeric::Lane;
 use numeric::rng::Random;
-use theory::problems::slab::Light;
+use theory::problems::slab::IncidentLight;
 
 /// The cosines with which particles enter a slab. Only lanes in the mask take a random number, and only for diffuse light,
 /// which `diffuse` makes a cosine of.
 #[inline(always)]
 pub fn entering<L: Lane>(
-    light: Light,
+    light: IncidentLight,
     diffuse: impl FnOnce(L) -> L,
     which: L::Mask,
     one: L,
     random: &mut impl Random<L>,
 ) -> L {
     match light {
-        Light::Collimated(cosine) => one.each(cosine),
-        Light::Diffuse => diffuse(random.uniform_where(which)),
+        IncidentLight::Collimated(cosine) => one.each(cosine),
+        IncidentLight::Diffuse => diffuse(random.uniform_where(which)),
     }
 }
 

@@ -31,11 +31,11 @@ type Streams<S> = Xoshiro<<S as Hardware>::Words>;
 /// The value of each lane, and its defect or, where walks pause, its lookups.
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
-struct Row([[f64; WIDTH]; 2]);
+struct LaneRow([[f64; WIDTH]; 2]);
 
 /// The random numbers of a step.
 #[derive(Clone, Copy)]
-struct Numbers<L> {
+struct StepNumbers<L> {
     /// An optical depth of mean 1.
     depth: L,
     /// Uniform in `[0, 1)`.
@@ -43,7 +43,7 @@ struct Numbers<L> {
 }
 
 /// Walks with a fixed number of random numbers a step take no further ones.
-impl<L: Lane> Random<L> for Numbers<L> {
+impl<L: Lane> Random<L> for StepNumbers<L> {
     #[inline(always)]
     fn uniform(&mut self) -> L {
         self.decision
@@ -81,7 +81,7 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
     fn new<S: Hardware<Pack = L>>(simd: S, walk: &W, course: C) -> Self {
         let zero = simd.splat(0.0);
         let all = zero.at_most(zero);
-        let mut none = Numbers { depth: zero, decision: zero };
+        let mut none = StepNumbers { depth: zero, decision: zero };
         let state = walk.begin(simd.splat(1.0), all, &mut none);
         let route = Route::new(course);
         Self { route, state, inside: all, lookups: zero, stores_defects: !W::IS_SURVIVAL }
@@ -99,7 +99,7 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
     /// Flies; returns the distances at which σ_t is looked up. Distances of lanes without a collision may lie
     /// outside the medium.
     #[inline(always)]
-    fn fly(&mut self, walk: &W, numbers: &Numbers<L>) -> L {
+    fn fly(&mut self, walk: &W, numbers: &StepNumbers<L>) -> L {
         self.inside = walk.fly(&mut self.state, &mut self.route, numbers.depth);
         walk.distance(&self.state, &self.route)
     }
@@ -110,8 +110,8 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
         &mut self,
         walk: &W,
         (t, extinction): (L, L),
-        numbers: &Numbers<L>,
-        row: &mut Row,
+        numbers: &StepNumbers<L>,
+        row: &mut LaneRow,
     ) -> [u64; 2] {
         let inside = self.inside;
         if !W::IS_SURVIVAL {
@@ -187,7 +187,7 @@ impl<S: Hardware> Ahead<S> {
 /// them in registers.
 struct Window<S: Hardware> {
     ahead: Ahead<S>,
-    rows: [Row; STEPS],
+    rows: [LaneRow; STEPS],
     /// A bit for each lane in which a walk ended in the step.
     ended: [u8; STEPS],
     /// A bit for each lane that looked σ_t up in the step.
@@ -202,7 +202,7 @@ impl<S: Hardware> Window<S> {
         let (before, none) = (*streams, [simd.splat(0.0); STEPS]);
         let mut ahead = Ahead { logarithms: none, decisions: none };
         *streams = ahead.find_all(simd, before, decides);
-        let rows = [Row::default(); STEPS];
+        let rows = [LaneRow::default(); STEPS];
         Self { ahead, rows, ended: [0; STEPS], inside: [0; STEPS], before }
     }
 
@@ -213,12 +213,12 @@ impl<S: Hardware> Window<S> {
         step: usize,
         streams: &mut Streams<S>,
         decides: bool,
-    ) -> Numbers<S::Pack> {
+    ) -> StepNumbers<S::Pack> {
         let depth = -self.ahead.logarithms[step];
         if !decides {
-            return Numbers { depth, decision: depth };
+            return StepNumbers { depth, decision: depth };
         }
-        let now = Numbers { depth, decision: self.ahead.decisions[step] };
+        let now = StepNumbers { depth, decision: self.ahead.decisions[step] };
         // A step depends on the one before it. The numbers of the next window depend on nothing and fill the
         // latency.
         self.ahead.find(step, streams, true);
@@ -241,7 +241,7 @@ impl<S: Hardware> Window<S> {
         simd: S,
         next: Streams<S>,
         streams: &mut Streams<S>,
-        (draws, lanes): (&mut Draws<'_>, &mut [Stream]),
+        (draws, lanes): (&mut WindowDraws<'_>, &mut [Stream]),
         (pack, stores_defects): (usize, bool),
     ) {
         let steps = by_lanes(simd, &self.ended, &self.inside);
@@ -321,7 +321,7 @@ struct Account {
 }
 
 /// The draws so far.
-struct Draws<'a> {
+struct WindowDraws<'a> {
     accounts: [Account; PACKS],
     values: &'a mut [f64],
     lookups: &'a mut [u32],
@@ -330,7 +330,7 @@ struct Draws<'a> {
     survival: [f64; 2],
 }
 
-impl Draws<'_> {
+impl WindowDraws<'_> {
     /// Makes draws of the walks of a pack that ended. Returns for each lane the number of steps up to the end of its last
     /// draw, or 0 if that draw does not end here.
     #[inline(never)]
@@ -338,7 +338,7 @@ impl Draws<'_> {
     fn collect<W: Walk>(
         &mut self,
         (pack, stores_defects): (usize, bool),
-        rows: &[Row; STEPS],
+        rows: &[LaneRow; STEPS],
         steps: &[StepBits; WIDTH],
     ) -> [usize; WIDTH] {
         let (mut over, survival) = ([0; WIDTH], self.survival);
@@ -409,7 +409,7 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
     let lanes = &mut streams.lanes[..];
     let (mut pack, mut other) = (Pack::new(simd, &walk, course), Pack::new(simd, &walk, course));
     let survival = if W::IS_SURVIVAL { pack.survival(&walk) } else { [0.0; 2] };
-    let mut draws = Draws { accounts, values, lookups, defects, survival };
+    let mut draws = WindowDraws { accounts, values, lookups, defects, survival };
     let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
     let mut window = Window::open(simd, &mut streams, W::DECIDES);
     let mut other_window = Window::open(simd, &mut other_streams, W::DECIDES);

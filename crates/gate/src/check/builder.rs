@@ -10,21 +10,21 @@ pub const MAX_DRAWS: u64 = 1 << 24;
 
 /// A number for each value of a draw, or a single number for all: from `f64`, `[f64; K]` or `Vec<f64>`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Values(pub(super) Vec<f64>);
+pub struct PerValue(pub(super) Vec<f64>);
 
-impl From<f64> for Values {
+impl From<f64> for PerValue {
     fn from(value: f64) -> Self {
         Self(vec![value])
     }
 }
 
-impl<const K: usize> From<[f64; K]> for Values {
+impl<const K: usize> From<[f64; K]> for PerValue {
     fn from(values: [f64; K]) -> Self {
         Self(values.to_vec())
     }
 }
 
-impl From<Vec<f64>> for Values {
+impl From<Vec<f64>> for PerValue {
     fn from(values: Vec<f64>) -> Self {
         Self(values)
     }
@@ -103,19 +103,19 @@ impl<S> Check<S> {
     }
 
     /// The mean of a correct draw.
-    pub fn truth(mut self, truth: impl Into<Values>) -> Self {
+    pub fn truth(mut self, truth: impl Into<PerValue>) -> Self {
         self.said.truth = Some(truth.into());
         self
     }
 
     /// The variance of a correct draw; it is tested, too.
-    pub fn variance(mut self, variance: impl Into<Values>) -> Self {
+    pub fn variance(mut self, variance: impl Into<PerValue>) -> Self {
         self.said.variance = Some(variance.into());
         self
     }
 
     /// The kurtosis of a correct draw, 3 for the normal distribution; without a variance an upper bound of it.
-    pub fn kurtosis(mut self, kurtosis: impl Into<Values>) -> Self {
+    pub fn kurtosis(mut self, kurtosis: impl Into<PerValue>) -> Self {
         self.said.kurtosis = Some(kurtosis.into());
         self
     }
@@ -214,9 +214,9 @@ impl<S> Check<S> {
 /// Properties of correct draws, and what is wanted of the verdict.
 #[derive(Debug, Clone)]
 pub(super) struct Said {
-    pub(super) truth: Option<Values>,
-    pub(super) variance: Option<Values>,
-    pub(super) kurtosis: Option<Values>,
+    pub(super) truth: Option<PerValue>,
+    pub(super) variance: Option<PerValue>,
+    pub(super) kurtosis: Option<PerValue>,
     pub(super) range: Option<[f64; 2]>,
     pub(super) lookups: Option<Lookups>,
     pub(super) rounding: f64,
@@ -251,7 +251,7 @@ impl Default for Said {
 impl Said {
     /// Number of values of a pushed draw.
     pub(super) fn values(&self) -> usize {
-        let truths = self.truth.as_ref().map_or(1, |Values(list)| list.len());
+        let truths = self.truth.as_ref().map_or(1, |PerValue(list)| list.len());
         let known = self.known().map_or(truths, |theory| theory.channels.len());
         self.values.unwrap_or(known.max(1))
     }
@@ -297,11 +297,11 @@ impl Said {
         if self.lookups.is_some() && !lookups {
             return Err(CheckFault::NoLookups);
         }
-        let number = |what, given: &Option<Values>, index: usize| match given {
+        let number = |what, given: &Option<PerValue>, index: usize| match given {
             None => Ok(None),
-            Some(Values(list)) if list.len() == 1 => Ok(Some(list[0])),
-            Some(Values(list)) if list.len() == values => Ok(Some(list[index])),
-            Some(Values(list)) => {
+            Some(PerValue(list)) if list.len() == 1 => Ok(Some(list[0])),
+            Some(PerValue(list)) if list.len() == values => Ok(Some(list[index])),
+            Some(PerValue(list)) => {
                 Err(CheckFault::Values { what, found: list.len(), wanted: values })
             }
         };

@@ -9,7 +9,7 @@ use std::thread;
 
 use super::builder::Check;
 use super::outcome::{CheckError, CheckFault, Outcome, assert_pass};
-use super::pushed::{Plan, Request};
+use super::pushed::{BlockPlan, BlockRequest};
 use super::sample::{Closure, Factory, Sample};
 use crate::session::Block;
 use numeric::rng::Stream;
@@ -22,7 +22,7 @@ struct Panic {
 
 /// Makes the draws of a block.
 fn block<T: Sample>(
-    request: Request,
+    request: BlockRequest,
     draw: &mut impl FnMut(&mut Stream) -> T,
 ) -> Result<Block, Panic> {
     let count = request.draws;
@@ -56,7 +56,7 @@ impl Check<()> {
     /// Judges the blocks of a source until the verdict is decided or the maximum number of draws is reached.
     fn judged<T: Sample>(
         self,
-        mut source: impl FnMut(Request) -> Result<Block, Panic>,
+        mut source: impl FnMut(BlockRequest) -> Result<Block, Panic>,
     ) -> Result<Outcome, CheckError> {
         let (name, seed, length) = (self.name.clone(), self.said.seed, self.said.wanted.most);
         let mut pushed = self.begun(T::VALUES, T::HAS_LOOKUPS, length)?;
@@ -152,7 +152,7 @@ const AHEAD: usize = 2;
 
 /// Makes every `turn.end`-th block from `turn.start` on, until no receiver is left.
 fn work<T: Sample, F: FnMut(&mut Stream) -> T>(
-    plan: Plan,
+    plan: BlockPlan,
     make: &impl Fn() -> F,
     turn: Range<usize>,
     blocks: &SyncSender<Result<Block, Panic>>,

@@ -25,10 +25,10 @@ mod property;
 mod pushed;
 mod sample;
 
-pub use builder::{Check, MAX_DRAWS, Values, check, check_with, claim};
+pub use builder::{Check, MAX_DRAWS, PerValue, check, check_with, claim};
 pub use outcome::{CheckError, CheckFault, MAX_VALUES, Outcome};
 pub use property::Property;
-pub use pushed::{Pushed, Request};
+pub use pushed::{BlockRequest, Pushed};
 pub use sample::{Closure, Factory, Sample};
 
 pub use crate::session::{Block, Source, Stop, Until};
@@ -36,7 +36,7 @@ pub use crate::session::{Block, Source, Stop, Until};
 use numeric::rng::Stream;
 
 /// A check that is ready to draw.
-pub trait Planned {
+pub trait PlannedCheck {
     /// Draws and judges with this α in place of the check's own.
     ///
     /// # Errors
@@ -45,13 +45,15 @@ pub trait Planned {
     fn verdict_at(self: Box<Self>, alpha: f64) -> Result<Outcome, CheckError>;
 }
 
-impl<T: Sample, F: FnMut(&mut Stream) -> T> Planned for Check<Closure<F>> {
+impl<T: Sample, F: FnMut(&mut Stream) -> T> PlannedCheck for Check<Closure<F>> {
     fn verdict_at(self: Box<Self>, alpha: f64) -> Result<Outcome, CheckError> {
         self.alpha(alpha).verdict()
     }
 }
 
-impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Planned for Check<Factory<M>> {
+impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> PlannedCheck
+    for Check<Factory<M>>
+{
     fn verdict_at(self: Box<Self>, alpha: f64) -> Result<Outcome, CheckError> {
         self.alpha(alpha).verdict()
     }
@@ -71,7 +73,7 @@ impl<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync> Planned for Che
 #[must_use = "a gate draws nothing before .verdicts() or .assert_pass()"]
 pub struct Gate<'a> {
     alpha: f64,
-    checks: Vec<Box<dyn Planned + 'a>>,
+    checks: Vec<Box<dyn PlannedCheck + 'a>>,
 }
 
 impl Default for Gate<'_> {
@@ -93,7 +95,7 @@ impl<'a> Gate<'a> {
     }
 
     /// Adds a check; its own α is not used.
-    pub fn check(mut self, check: impl Planned + 'a) -> Self {
+    pub fn check(mut self, check: impl PlannedCheck + 'a) -> Self {
         self.checks.push(Box::new(check));
         self
     }

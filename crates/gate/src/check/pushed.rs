@@ -65,9 +65,9 @@ impl Check<()> {
     }
 
     /// Numbers that address the blocks of draws.
-    fn plan(&self) -> Plan {
+    fn plan(&self) -> BlockPlan {
         let (seed, experiment) = (self.said.seed, name_hash(&self.name));
-        Plan { seed, experiment, most: self.said.wanted.most.unwrap_or(MAX_DRAWS) }
+        BlockPlan { seed, experiment, most: self.said.wanted.most.unwrap_or(MAX_DRAWS) }
     }
 }
 
@@ -89,18 +89,18 @@ pub struct Pushed {
 
 /// Request for a block of draws.
 #[derive(Debug, Clone, Copy)]
-pub struct Request {
+pub struct BlockRequest {
     /// Number of draws.
     pub draws: usize,
     /// Number of the block, counted from 0.
     pub block: u64,
-    pub(super) plan: Plan,
+    pub(super) plan: BlockPlan,
 }
 
-impl Request {
+impl BlockRequest {
     /// Returns the random stream of the block, which depends on seed, name and number of the block.
     pub fn stream(&self) -> Stream {
-        let Plan { seed, experiment, .. } = self.plan;
+        let BlockPlan { seed, experiment, .. } = self.plan;
         Address { seed, experiment, block: self.block, lane: 0 }.stream()
     }
 
@@ -112,17 +112,17 @@ impl Request {
 
 /// Addresses of the blocks of draws, and their number.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Plan {
+pub(super) struct BlockPlan {
     pub(super) seed: u64,
     pub(super) experiment: u64,
     pub(super) most: u64,
 }
 
-impl Plan {
+impl BlockPlan {
     /// Returns the requests for all blocks.
-    pub(super) fn requests(self) -> impl Iterator<Item = Request> {
+    pub(super) fn requests(self) -> impl Iterator<Item = BlockRequest> {
         let size = BUFFER as u64;
-        (0..self.most.div_ceil(size)).map(move |block| Request {
+        (0..self.most.div_ceil(size)).map(move |block| BlockRequest {
             draws: room(self.most - block * size),
             block,
             plan: self,
@@ -156,13 +156,13 @@ impl Pushed {
     /// ```
     pub fn drive<E>(
         &mut self,
-        mut source: impl FnMut(&mut Self, Request) -> Result<bool, E>,
+        mut source: impl FnMut(&mut Self, BlockRequest) -> Result<bool, E>,
     ) -> Result<(), E> {
         let plan = self.check.plan();
         let is_fixed = self.check.said.wanted.most.is_some();
         let until = Until { most: Some(plan.most), is_decided: !is_fixed };
         let stopped = drive(self, until, |pushed, draws| {
-            let request = Request { draws, block: pushed.next, plan };
+            let request = BlockRequest { draws, block: pushed.next, plan };
             pushed.next += 1;
             source(pushed, request)
         })?;

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use super::Until;
-use super::flights::Flights;
+use super::flights::RayFlights;
 use super::quantity::{
     MEAN_CAP, Quantity, USUAL, VARIANCE_CAP, VarianceBound, mean_floor, variance_floor,
     variance_of_squares,
@@ -40,7 +40,7 @@ pub struct Claim {
     /// Rounding error of each draw, relative to the truth; absolute for a truth of 0.
     pub rounding: f64,
     /// The ray of free flights, if draws are their lengths.
-    pub flights: Option<Flights>,
+    pub flights: Option<RayFlights>,
 }
 
 /// Claim on the number of lookups of a draw.

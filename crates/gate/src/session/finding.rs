@@ -176,7 +176,7 @@ const MISSED: f64 = 20.0;
 
 /// A change of the mean.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Change {
+pub(super) struct MeanChange {
     /// The first draw of the part that differs most from the others.
     pub from: u64,
     /// The draw after its last one; `None` for the end.
@@ -216,7 +216,7 @@ impl Scalar {
 
     /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two
     /// blocks. The limit is smaller where the mean of all draws does not fail and that of later ones does.
-    pub(super) fn obvious_change(&self) -> Option<Change> {
+    pub(super) fn obvious_change(&self) -> Option<MeanChange> {
         let (n, mean) = (self.past.draws() as f64, self.past.mean());
         let (carry, variance) = (self.past.effective_draws(), self.past.variance());
         let need = if self.has_failed() { 1.0 } else { HINTED };
@@ -236,9 +236,9 @@ impl Scalar {
             let z = excess / (variance * inside * (1.0 - share)).sqrt();
             let is_plain = z.abs() > need * plain_limit(carry * share.min(1.0 - share));
             let to = (b < end).then_some(path[b].1);
-            is_plain.then(|| Change { from: path[a].1, to, off: mean + excess / inside, z })
+            is_plain.then(|| MeanChange { from: path[a].1, to, off: mean + excess / inside, z })
         };
-        let larger = |a: &Change, b: &Change| a.z.abs().total_cmp(&b.z.abs());
+        let larger = |a: &MeanChange, b: &MeanChange| a.z.abs().total_cmp(&b.z.abs());
         let from_one_on = (1..end).filter_map(|a| between(a, end, need)).max_by(larger);
         from_one_on.or_else(|| {
             // With this number of pairs the limit is reached a little more easily.

@@ -22,7 +22,7 @@ const FEWEST: f64 = 20.0;
 
 /// Properties of flights along a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Flights {
+pub struct RayFlights {
     /// S, the length of the ray.
     pub length: f64,
     /// The position of the ray's beginning: it limits the resolution of positions.
@@ -40,8 +40,8 @@ pub(super) struct Marked {
 }
 
 /// Flights, with the findings from their first block.
-pub(super) struct Ends {
-    flights: Flights,
+pub(super) struct FlightFindings {
+    flights: RayFlights,
     rounding: f64,
     /// Distance from which on a flight has left; found from the first block.
     near: Option<f64>,
@@ -54,15 +54,15 @@ pub(super) struct Ends {
     most_frequent: (f64, f64),
 }
 
-impl Ends {
-    pub(super) fn new(flights: Flights, rounding: f64) -> Self {
+impl FlightFindings {
+    pub(super) fn new(flights: RayFlights, rounding: f64) -> Self {
         let (near, left, seen, most_frequent) = (None, 0, 0, (f64::NAN, 0.0));
         Self { flights, rounding, near, left, seen, is_single: true, most_frequent }
     }
 
     /// The flights, once with the ray's length in place of all that leave, and once with infinity.
     pub(super) fn marked(&mut self, block: &[f64]) -> Marked {
-        let Flights { length, from, .. } = self.flights;
+        let RayFlights { length, from, .. } = self.flights;
         self.is_single &= ties::all_single_precision(block);
         let single = if self.is_single { SINGLE } else { 0.0 };
         let slack = self.rounding.max(single) * (from.abs() + length);
@@ -86,7 +86,7 @@ impl Ends {
     /// Message if flights that leave cannot be distinguished from distances.
     pub(super) fn wrong(&self) -> Option<String> {
         let (x, share) = self.most_frequent;
-        let Flights { escape, .. } = self.flights;
+        let RayFlights { escape, .. } = self.flights;
         let is_shown = escape * self.seen as f64 >= FEWEST && share * self.seen as f64 >= FEWEST;
         let is_that_of_leaving = 0.5 * escape <= share && share <= 2.0 * escape;
         if self.left > 0 || !is_shown || !is_that_of_leaving {
@@ -133,16 +133,16 @@ fn most_frequent(mut values: Vec<f64>) -> (f64, usize) {
 mod tests {
     use super::*;
 
-    const FLIGHTS: Flights = Flights { length: 0.7, from: 0.0, escape: 0.25 };
+    const FLIGHTS: RayFlights = RayFlights { length: 0.7, from: 0.0, escape: 0.25 };
     const INFINITY: f64 = f64::INFINITY;
 
-    fn beyond(ends: &mut Ends, block: &[f64]) -> Vec<f64> {
+    fn beyond(ends: &mut FlightFindings, block: &[f64]) -> Vec<f64> {
         ends.marked(block).beyond
     }
 
     #[test]
     fn every_way_to_write_a_flight_that_leaves_is_read() {
-        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        let mut ends = FlightFindings::new(FLIGHTS, 1e-12);
         let marked = ends.marked(&[0.1, 0.7, 0.70001, f64::MAX, INFINITY, -1.0]);
         assert_eq!(marked.at_end, [0.1, 0.7, 0.7, 0.7, 0.7, 0.7]);
         assert_eq!(marked.beyond, [0.1, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY]);
@@ -155,10 +155,10 @@ mod tests {
     fn rounding_to_single_precision_moves_no_flight_from_the_end() {
         let short = f64::from(0.7f32);
         assert!(short < 0.7);
-        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        let mut ends = FlightFindings::new(FLIGHTS, 1e-12);
         assert_eq!(beyond(&mut ends, &[0.25, short]), [0.25, INFINITY]);
         // Beside doubles it is a collision next to the end.
-        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        let mut ends = FlightFindings::new(FLIGHTS, 1e-12);
         assert_eq!(beyond(&mut ends, &[0.1, short]), [0.1, short]);
     }
 
@@ -168,16 +168,16 @@ mod tests {
             (0..400).map(|i| if i % 4 == 0 { left } else { 1e-3 * f64::from(i) }).collect()
         };
         for wrong in [0.0, 0.5] {
-            let mut ends = Ends::new(FLIGHTS, 1e-12);
+            let mut ends = FlightFindings::new(FLIGHTS, 1e-12);
             ends.marked(&flights(wrong));
             let said = ends.wrong().expect("a wrong convention");
             assert!(said.contains(&format!("25 % of the first draws are {wrong};")), "{said}");
         }
-        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        let mut ends = FlightFindings::new(FLIGHTS, 1e-12);
         ends.marked(&flights(0.7));
         assert_eq!(ends.wrong(), None);
         // Many frequent numbers are no sign of a wrong convention.
-        let mut ends = Ends::new(FLIGHTS, 1e-12);
+        let mut ends = FlightFindings::new(FLIGHTS, 1e-12);
         ends.marked(&[0.1, 0.2, 0.3].repeat(200));
         assert_eq!(ends.wrong(), None);
     }

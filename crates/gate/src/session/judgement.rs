@@ -5,7 +5,7 @@ use crate::CheckId;
 use std::fmt::{self, Write};
 
 use super::reason::Reason;
-use crate::causes::{Pattern, Side};
+use crate::causes::{DeviationSide, Pattern};
 use crate::stats::verdict::{GateFinding, Verdict};
 use numeric::digits::{count, fixed, short, signed};
 
@@ -206,8 +206,8 @@ impl Judgement {
         }
         match self.fault {
             Some(InvalidDraw::Number | InvalidDraw::Range) => pattern.number = true,
-            Some(InvalidDraw::Lookups) => pattern.lookups = Side::Both,
-            Some(InvalidDraw::Spread | InvalidDraw::Distance) => pattern.mean = Side::Both,
+            Some(InvalidDraw::Lookups) => pattern.lookups = DeviationSide::Both,
+            Some(InvalidDraw::Spread | InvalidDraw::Distance) => pattern.mean = DeviationSide::Both,
             None => {}
         }
         pattern.binary = self.batch == 1 && self.has_binary_moments();

@@ -60,12 +60,12 @@ mod verdict;
 
 pub use claim::{BUFFER, CheckedClaim, Claim, ClaimError, Lookups, Options, ROUNDING};
 pub use finding::plain_limit;
-pub use flights::Flights;
+pub use flights::RayFlights;
 pub use judgement::{
     DistributionFinding, DriftFinding, IndependenceFinding, InvalidDraw, Judgement, ScalarFinding,
     Stop,
 };
-pub use planned::{BlockSums, Planned, Trail};
+pub use planned::{BlockSums, PlannedQuantity, Trail};
 pub use quantity::{Quantity, VarianceBound};
 pub use reason::{Missing, Reason, What};
 pub use scalar::{Levels, SIDE_SHARE, Scalar, main_share};

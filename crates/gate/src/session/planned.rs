@@ -22,7 +22,7 @@ pub const BLOCK_SUMS: usize = SUMS + 1;
 
 /// A quantity with the tolerance that is fixed before the first draw.
 #[derive(Debug, Clone)]
-pub struct Planned {
+pub struct PlannedQuantity {
     /// The quantity.
     pub quantity: Quantity,
     /// Variance, tolerance and δ, and the number of draws that these are planned for.
@@ -79,7 +79,7 @@ pub struct BlockSums {
 
 impl BlockSums {
     /// Adds draws of y, each `times` times where that is given.
-    pub fn absorb(&mut self, planned: &Planned, y: &[f64], times: Option<&[f64]>) {
+    pub fn absorb(&mut self, planned: &PlannedQuantity, y: &[f64], times: Option<&[f64]>) {
         let arguments = planned.design.arguments();
         if let Some(times) = times {
             self.psi.absorb_counted(y, times, &arguments);
@@ -103,7 +103,7 @@ impl BlockSums {
 
 impl Quantity {
     /// Plans the quantity for `draws` draws, before the first of them.
-    pub fn planned(self, draws: f64) -> Planned {
+    pub fn planned(self, draws: f64) -> PlannedQuantity {
         let variance = self.known_variance().unwrap_or(f64::INFINITY);
         let budget = gate::tolerance_of(variance, draws);
         let design = Design::new(variance, self.tolerance.unwrap_or(budget), self.floor);
@@ -118,11 +118,11 @@ impl Quantity {
             (needed > draws * (1.0 + 1e-6)).then_some(needed)
         };
         let least = needs(Design::new(variance, widest, self.floor).tolerance);
-        Planned { quantity: self, design, least, underpowered }
+        PlannedQuantity { quantity: self, design, least, underpowered }
     }
 }
 
-impl Planned {
+impl PlannedQuantity {
     /// A look at the sums of `draws` draws, unless an earlier one has decided.
     pub fn look(&self, trail: &mut Trail, draws: u64, levels: Levels) {
         if trail.decision != Decision::Open {

@@ -2,7 +2,7 @@
 
 use super::claim::{BUFFER, CheckedClaim};
 use super::dependence::{Contents, Steps};
-use super::flights::Ends;
+use super::flights::FlightFindings;
 use super::judgement::{InvalidDraw, Judgement, Stop};
 use super::scalar::{Levels, Scalar, main_share};
 use super::theory::{Background, Tested, Tests};
@@ -82,7 +82,7 @@ pub(super) struct Reading {
     is_varied: bool,
     resolution: Option<f64>,
     pub(super) background: Background,
-    pub(super) ends: Option<Ends>,
+    pub(super) ends: Option<FlightFindings>,
     y: Vec<f64>,
     other: Vec<f64>,
 }
@@ -130,7 +130,10 @@ impl Reading {
             is_varied: false,
             resolution: None,
             background,
-            ends: trial.claim.flights.map(|flights| Ends::new(flights, trial.claim.rounding)),
+            ends: trial
+                .claim
+                .flights
+                .map(|flights| FlightFindings::new(flights, trial.claim.rounding)),
             y: Vec::with_capacity(BUFFER),
             other: Vec::with_capacity(BUFFER),
         }

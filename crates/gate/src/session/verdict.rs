@@ -11,7 +11,7 @@
 //! a refuted variance.
 
 use super::dependence::{an_index, off_without_change};
-use super::flights::Ends;
+use super::flights::FlightFindings;
 use super::judgement::{IndependenceFinding, InvalidDraw, Judgement, ScalarFinding, Stop};
 use super::reading::{Reading, Refuted};
 use super::reason::Reason;
@@ -119,7 +119,7 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     let refuted = reading.refuted.as_ref();
     let refuted = refuted.map(|refuted| fault(reading, refuted, judgement.refuting));
     let reasons = Reasons {
-        refuted: refuted.or_else(|| reading.ends.as_ref().and_then(Ends::wrong)),
+        refuted: refuted.or_else(|| reading.ends.as_ref().and_then(FlightFindings::wrong)),
         dependent: is_dependent.then(|| dependent(&judgement.independence)),
         failing: of(Verdict::Fail),
         open: of(Verdict::Inconclusive),
@@ -230,7 +230,7 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
         InvalidDraw::Distance => format!("distance: draw {index} is {value}, which is no distance"),
     };
     let is_distance = matches!(fault, InvalidDraw::Number | InvalidDraw::Distance);
-    let cure = reading.ends.as_ref().filter(|_| is_distance).map(Ends::cure);
+    let cure = reading.ends.as_ref().filter(|_| is_distance).map(FlightFindings::cure);
     let said = cure.map_or(said.clone(), |cure| format!("{said}; {cure}"));
     let index = reading.steps.found().map(|step| format!("; {}", an_index(step)));
     let said = said + &index.unwrap_or_default();

@@ -122,7 +122,7 @@ impl Bets {
     /// Gains of the bets on some draws. Each draw must lie in the range.
     pub fn gains(&self, y: &[f64]) -> Gains {
         let mut sums = vec![0.0; self.factors.len()];
-        fused::run(Sums { factors: &self.factors, y, totals: &mut sums });
+        fused::run(BettingSums { factors: &self.factors, y, totals: &mut sums });
         let below = sums.split_off(self.pass[1]);
         let above = sums.split_off(self.pass[0]);
         Gains { against: sums, pass: [above, below] }
@@ -130,13 +130,13 @@ impl Bets {
 }
 
 /// `Σ ln(offset + slope · y)` for all factors.
-struct Sums<'a> {
+struct BettingSums<'a> {
     factors: &'a [Factor],
     y: &'a [f64],
     totals: &'a mut [f64],
 }
 
-impl Loop for Sums<'_> {
+impl Loop for BettingSums<'_> {
     #[inline(always)]
     fn run(self) {
         // Products of all factors side by side: a compiler vectorizes the loop over their logarithms.

@@ -49,12 +49,12 @@ pub struct Argument {
 /// `N` sums of ψ over the same draws, each with its own argument.
 #[derive(Debug, Clone, Copy)]
 pub struct PsiSums<const N: usize> {
-    products: [Product; N],
+    products: [CatoniProduct; N],
 }
 
 /// `∏ (1 + |t| + t²/2)^{sign t}`: mantissas in lanes, exponents apart.
 #[derive(Debug, Clone, Copy)]
-struct Product {
+struct CatoniProduct {
     above: [f64; LANES],
     below: [f64; LANES],
     exponent: [i64; LANES],
@@ -65,7 +65,7 @@ struct Product {
 impl<const N: usize> Default for PsiSums<N> {
     fn default() -> Self {
         let one = [1.0; LANES];
-        let product = Product { above: one, below: one, exponent: [0; LANES], large: 0.0 };
+        let product = CatoniProduct { above: one, below: one, exponent: [0; LANES], large: 0.0 };
         Self { products: [product; N] }
     }
 }
@@ -94,7 +94,7 @@ impl<const N: usize> PsiSums<N> {
 
 /// Draws with their numbers of occurrences, for all sums.
 struct Counted<'a> {
-    products: &'a mut [Product],
+    products: &'a mut [CatoniProduct],
     y: &'a [f64],
     times: &'a [f64],
     arguments: &'a [Argument],
@@ -143,7 +143,7 @@ fn terms<const N: usize>(y: &[f64; N], argument: &Argument) -> [f64; N] {
 
 /// Draws one by one, for all sums.
 struct Each<'a, const N: usize> {
-    products: &'a mut [Product; N],
+    products: &'a mut [CatoniProduct; N],
     y: &'a [f64],
     arguments: &'a [Argument; N],
 }
@@ -185,7 +185,7 @@ fn factors(y: f64, argument: &Argument) -> (f64, f64) {
     if t < 0.0 { (2.0, factor) } else { (factor, 2.0) }
 }
 
-impl Product {
+impl CatoniProduct {
     /// Multiplies by the factors of draws.
     #[inline(always)]
     fn multiply(&mut self, y: &[f64], argument: &Argument) {

@@ -49,9 +49,9 @@ const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Hasher of keys that are nearly hashes: tables go by low bits, which the coarsest tokens leave at 0.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Spread(u64);
+pub(super) struct SpreadHasher(u64);
 
-impl Hasher for Spread {
+impl Hasher for SpreadHasher {
     fn finish(&self) -> u64 {
         self.0
     }

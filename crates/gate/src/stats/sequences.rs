@@ -20,7 +20,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use super::capital::ln_add;
-use super::replays::{Replay, Spread, hash};
+use super::replays::{Replay, SpreadHasher, hash};
 
 /// Maximum number of windows that are kept.
 const MAX_WINDOWS: usize = 1 << 15;
@@ -49,7 +49,7 @@ pub struct Sequences {
     gap: u64,
     tokens: u64,
     ring: Ring,
-    kept: HashMap<u64, Window, BuildHasherDefault<Spread>>,
+    kept: HashMap<u64, TokenWindow, BuildHasherDefault<SpreadHasher>>,
     /// Number of leading bits of a window's hash that must be 0.
     bits: u32,
     pending: Option<Bet>,
@@ -94,7 +94,7 @@ struct Token {
 
 /// A window, with the hash of the tokens after its last occurrence.
 #[derive(Debug, Clone, Copy)]
-struct Window {
+struct TokenWindow {
     next: u64,
     draw: u64,
     token: u64,
@@ -222,13 +222,13 @@ impl Sequences {
     fn keep(&mut self, scheme: &Scheme, window: &Token, last: u64) {
         let next = self.hash_of(last, scheme.bet, scheme.bases[1]);
         let token = last - scheme.bet as u64;
-        let kept = self.kept.entry(window.window).or_insert(Window {
+        let kept = self.kept.entry(window.window).or_insert(TokenWindow {
             next,
             draw: window.draw,
             token,
             count: 0,
         });
-        *kept = Window { next, draw: window.draw, token, count: kept.count + 1 };
+        *kept = TokenWindow { next, draw: window.draw, token, count: kept.count + 1 };
         // A certain repetition needs few further windows, only for its numbers.
         let most = if self.ln_e > CERTAIN { FEW_WINDOWS } else { MAX_WINDOWS };
         while self.kept.len() >= most {

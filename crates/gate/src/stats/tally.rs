@@ -148,7 +148,7 @@ impl<T> Census<T> {
 impl Census<f64> {
     /// Counts numbers, distinguished by their bits; `None` where too many of them differ.
     pub fn of(draws: &[f64]) -> Option<Self> {
-        let mut table = Table::EMPTY;
+        let mut table = ValueTable::EMPTY;
         let (rows, rest) = draws.as_chunks::<FOLD>();
         for row in rows.iter().map(|row| &row[..]).chain([rest]) {
             for (fold, x) in row.iter().enumerate() {
@@ -166,14 +166,14 @@ impl Census<f64> {
 
 /// Values by their bits. The marks of occupied places are read for every draw and change rarely. They are kept
 /// apart from the counts, so that reading does not depend on a store.
-struct Table {
+struct ValueTable {
     bits: [u64; PLACES],
     taken: [bool; PLACES],
     times: [[u32; FOLD]; PLACES],
     used: usize,
 }
 
-impl Table {
+impl ValueTable {
     const EMPTY: Self =
         Self { bits: [0; PLACES], taken: [false; PLACES], times: [[0; FOLD]; PLACES], used: 0 };
 

@@ -17,7 +17,7 @@ const SHOWN: usize = 40;
 pub(super) const LISTED: usize = 20;
 
 /// An open table.
-pub(super) struct Table {
+pub(super) struct CsvTable {
     reader: Reader<Lines>,
     file: String,
     /// Indices of the columns that are read.
@@ -31,7 +31,7 @@ pub(super) struct Table {
     is_first: bool,
 }
 
-impl Table {
+impl CsvTable {
     /// Opens a table, finds the columns, and reads its first draw.
     pub(super) fn open(
         bytes: Bytes,
@@ -331,16 +331,16 @@ fn ends(bytes: &[u8]) -> u64 {
 mod tests {
     use std::io::Cursor;
 
-    use super::super::{Draws, Format, all};
+    use super::super::{DrawSource, NumberFormat, all};
     use super::*;
 
-    fn table(column: Option<&str>) -> Format {
-        Format::Csv { column: column.and_then(|column| column.parse().ok()), lookups: None }
+    fn table(column: Option<&str>) -> NumberFormat {
+        NumberFormat::Csv { column: column.and_then(|column| column.parse().ok()), lookups: None }
     }
 
     fn read(text: &str, column: Option<&str>) -> Result<Vec<f64>, ForeignError> {
         let reader = Cursor::new(text.as_bytes().to_vec());
-        all(Draws::from_reader(reader, "x.csv", table(column))?)
+        all(DrawSource::from_reader(reader, "x.csv", table(column))?)
     }
 
     fn error(text: &str, column: Option<&str>) -> String {
@@ -423,7 +423,7 @@ mod tests {
     fn draws_before_a_fault_are_given() {
         let reader = Cursor::new(b"1\n2\nx\n".to_vec());
         let format = table(None);
-        let mut draws = Draws::from_reader(reader, "x.csv", format).expect("a table");
+        let mut draws = DrawSource::from_reader(reader, "x.csv", format).expect("a table");
         let mut buffer = Vec::new();
         assert!(draws.read(&mut buffer, 10).is_err());
         assert_eq!(buffer, [1.0, 2.0]);
@@ -454,8 +454,11 @@ mod tests {
         }
         for first in ["", "0.5\n", "\"1\n1\n"] {
             let reader = std::io::Read::chain(Cursor::new(first.as_bytes().to_vec()), Endless(0));
-            let draws =
-                Draws::from_reader(reader, "x.csv", Format::Csv { column: None, lookups: None });
+            let draws = DrawSource::from_reader(
+                reader,
+                "x.csv",
+                NumberFormat::Csv { column: None, lookups: None },
+            );
             let error = draws.and_then(all).expect_err("an endless line").to_string();
             assert!(error.contains("longer than 65536 bytes"), "{error}");
         }

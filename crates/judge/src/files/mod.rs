@@ -25,14 +25,14 @@ use std::str::FromStr;
 pub use layout::Layout;
 
 use super::{BUFFER, Block, Source};
-use media::files::number::Number;
+use media::files::number::NumberType;
 use media::formats;
 use numeric::digits::counted;
 
 /// Format of numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Format {
+pub enum NumberFormat {
     /// A table of text, columns separated by commas.
     Csv {
         /// Column to read; a table of one column needs no choice.
@@ -75,7 +75,7 @@ impl std::fmt::Display for Column {
     }
 }
 
-impl Format {
+impl NumberFormat {
     /// Returns the format of a file's ending; `None` for an unknown ending.
     pub fn of_path(path: &Path) -> Option<Self> {
         Some(match formats::Format::of(path)? {
@@ -92,29 +92,29 @@ impl Format {
 type Bytes = Box<dyn Read + Send>;
 
 /// An open source of draws.
-pub struct Draws {
-    source: Reader,
+pub struct DrawSource {
+    source: DrawReader,
 }
 
-enum Reader {
-    Csv(Box<csv::Table>),
-    Rows(Box<raw::Rows>),
+enum DrawReader {
+    Csv(Box<csv::CsvTable>),
+    Rows(Box<raw::NumberRows>),
 }
 
-impl std::fmt::Debug for Draws {
+impl std::fmt::Debug for DrawSource {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Draws").field("known_length", &self.known_length()).finish_non_exhaustive()
     }
 }
 
-impl Draws {
+impl DrawSource {
     /// Opens a file.
     ///
     /// # Errors
     ///
     /// The file cannot be read, holds no draws, is not of this format, or its length shows that it
     /// is cut off.
-    pub fn open(path: &Path, format: Format) -> Result<Self, ForeignError> {
+    pub fn open(path: &Path, format: NumberFormat) -> Result<Self, ForeignError> {
         Self::open_as(path, format, &Layout::default())
     }
 
@@ -123,7 +123,11 @@ impl Draws {
     /// # Errors
     ///
     /// The errors of [`Draws::open`], and files with other columns.
-    pub fn open_as(path: &Path, format: Format, layout: &Layout) -> Result<Self, ForeignError> {
+    pub fn open_as(
+        path: &Path,
+        format: NumberFormat,
+        layout: &Layout,
+    ) -> Result<Self, ForeignError> {
         let name = path.display().to_string();
         let unreadable = |cause| ForeignError::unreadable(&name, cause);
         let file = File::open(path).map_err(unreadable)?;
@@ -140,7 +144,7 @@ impl Draws {
     pub fn from_reader(
         reader: impl Read + Send + 'static,
         name: &str,
-        format: Format,
+        format: NumberFormat,
     ) -> Result<Self, ForeignError> {
         Self::from_reader_as(reader, name, format, &Layout::default())
     }
@@ -153,7 +157,7 @@ impl Draws {
     pub fn from_reader_as(
         reader: impl Read + Send + 'static,
         name: &str,
-        format: Format,
+        format: NumberFormat,
         layout: &Layout,
     ) -> Result<Self, ForeignError> {
         Self::new(Box::new(reader), name, format, None, layout)
@@ -162,24 +166,24 @@ impl Draws {
     fn new(
         bytes: Bytes,
         name: &str,
-        format: Format,
+        format: NumberFormat,
         length: Option<u64>,
         layout: &Layout,
     ) -> Result<Self, ForeignError> {
         let source = match format {
-            Format::Csv { column, lookups } => {
+            NumberFormat::Csv { column, lookups } => {
                 let column = column.or_else(|| layout.column.clone());
                 let layout = Layout { column, ..layout.clone() };
-                let table = csv::Table::open(bytes, name, &layout, lookups.as_ref())?;
-                Reader::Csv(Box::new(table))
+                let table = csv::CsvTable::open(bytes, name, &layout, lookups.as_ref())?;
+                DrawReader::Csv(Box::new(table))
             }
-            Format::Npy => Reader::Rows(npy::open(bytes, name, length, layout)?.into()),
-            Format::Raw | Format::RawSingle => {
+            NumberFormat::Npy => DrawReader::Rows(npy::open(bytes, name, length, layout)?.into()),
+            NumberFormat::Raw | NumberFormat::RawSingle => {
                 let word = match format {
-                    Format::Raw => Number::of_width(8, false),
-                    _ => Number::of_width(4, false),
+                    NumberFormat::Raw => NumberType::of_width(8, false),
+                    _ => NumberType::of_width(4, false),
                 };
-                Reader::Rows(raw::open(bytes, name, length, layout, word)?.into())
+                DrawReader::Rows(raw::open(bytes, name, length, layout, word)?.into())
             }
         };
         Ok(Self { source })
@@ -188,16 +192,16 @@ impl Draws {
     /// Returns the number of all draws, if the file gives it.
     pub fn known_length(&self) -> Option<u64> {
         match &self.source {
-            Reader::Csv(_) => None,
-            Reader::Rows(rows) => rows.known_length(),
+            DrawReader::Csv(_) => None,
+            DrawReader::Rows(rows) => rows.known_length(),
         }
     }
 
     /// Returns the number of values of a draw.
     pub fn values(&self) -> usize {
         match &self.source {
-            Reader::Csv(table) => table.values(),
-            Reader::Rows(rows) => rows.values(),
+            DrawReader::Csv(table) => table.values(),
+            DrawReader::Rows(rows) => rows.values(),
         }
     }
 
@@ -215,13 +219,13 @@ impl Draws {
     }
 }
 
-impl Source for Draws {
+impl Source for DrawSource {
     type Error = ForeignError;
 
     fn fill(&mut self, block: &mut Block, most: usize) -> Result<(), ForeignError> {
         match &mut self.source {
-            Reader::Csv(table) => table.read(&mut block.columns, &mut block.lookups, most),
-            Reader::Rows(rows) => rows.read(&mut block.columns, most),
+            DrawReader::Csv(table) => table.read(&mut block.columns, &mut block.lookups, most),
+            DrawReader::Rows(rows) => rows.read(&mut block.columns, most),
         }
     }
 }
@@ -347,8 +351,8 @@ impl ForeignError {
 /// # Errors
 ///
 /// The file cannot be read, or something in it is not a draw.
-pub fn count(path: &Path, format: Format, layout: &Layout) -> Result<u64, ForeignError> {
-    let mut draws = Draws::open_as(path, format, layout)?;
+pub fn count(path: &Path, format: NumberFormat, layout: &Layout) -> Result<u64, ForeignError> {
+    let mut draws = DrawSource::open_as(path, format, layout)?;
     if let Some(length) = draws.known_length() {
         return Ok(length);
     }
@@ -365,7 +369,7 @@ pub fn count(path: &Path, format: Format, layout: &Layout) -> Result<u64, Foreig
 
 /// Returns every draw, read in small pieces.
 #[cfg(test)]
-fn all(mut draws: Draws) -> Result<Vec<f64>, ForeignError> {
+fn all(mut draws: DrawSource) -> Result<Vec<f64>, ForeignError> {
     let (mut all, mut buffer) = (Vec::new(), Vec::new());
     while draws.read(&mut buffer, 997)? > 0 {
         all.append(&mut buffer);

@@ -1,9 +1,9 @@
 //! `NumPy`'s array file: a header, then words, in rows if the array has two axes.
 
-use super::raw::{Rows, Words};
+use super::raw::{NumberRows, Words};
 use super::{Bytes, ForeignError, Layout};
 use media::files::npy;
-use media::files::number::Number;
+use media::files::number::NumberType;
 
 /// Opens an array; `length` counts the bytes of the file.
 pub(super) fn open(
@@ -11,7 +11,7 @@ pub(super) fn open(
     file: &str,
     length: Option<u64>,
     layout: &Layout,
-) -> Result<Rows, ForeignError> {
+) -> Result<NumberRows, ForeignError> {
     let header = npy::bytes(&mut bytes).map_err(|cause| ForeignError::unreadable(file, cause))?;
     if header.is_empty() {
         return Err(ForeignError::Empty { file: file.to_owned() });
@@ -20,7 +20,7 @@ pub(super) fn open(
         .map_err(|cause| ForeignError::NotNpy { file: file.to_owned(), cause })?;
     let shape = || ForeignError::Shape { file: file.to_owned(), shape: array.written_shape() };
     let expected = array.count().ok_or_else(shape)?;
-    let word = Number::float(&array.kind).ok_or_else(|| ForeignError::ElementType {
+    let word = NumberType::float(&array.kind).ok_or_else(|| ForeignError::ElementType {
         file: file.to_owned(),
         found: array.kind.clone(),
     })?;
@@ -55,14 +55,14 @@ pub(super) fn open(
     let words = Words::new(bytes, file, word, Some(expected));
     // With one axis the order of C and that of Fortran are the same.
     let by_column = array.fortran_order && width > 1;
-    Ok(Rows::new(words, width, places, by_column))
+    Ok(NumberRows::new(words, width, places, by_column))
 }
 
 #[cfg(test)]
 mod tests {
     use std::io::{Cursor, Write};
 
-    use super::super::{Column, Draws, Format, all};
+    use super::super::{Column, DrawSource, NumberFormat, all};
     use super::*;
     use crate::{Block, Source};
 
@@ -86,14 +86,14 @@ mod tests {
         array("<f8", shape, values.iter().map(|x| x.to_le_bytes()))
     }
 
-    fn pipe(bytes: Vec<u8>) -> Result<Draws, ForeignError> {
-        Draws::from_reader(Cursor::new(bytes), "x.npy", Format::Npy)
+    fn pipe(bytes: Vec<u8>) -> Result<DrawSource, ForeignError> {
+        DrawSource::from_reader(Cursor::new(bytes), "x.npy", NumberFormat::Npy)
     }
 
-    fn open(bytes: &[u8]) -> Result<Draws, ForeignError> {
+    fn open(bytes: &[u8]) -> Result<DrawSource, ForeignError> {
         let mut file = tempfile::NamedTempFile::new().expect("a file");
         file.write_all(bytes).expect("written");
-        Draws::open(file.path(), Format::Npy)
+        DrawSource::open(file.path(), NumberFormat::Npy)
     }
 
     #[test]
@@ -130,7 +130,12 @@ mod tests {
         for bytes in [doubles("(20000, 3)", &rows), fortran] {
             let layout = |column: &str| Layout::column(column.parse().ok());
             let open = |layout: &Layout| {
-                Draws::from_reader_as(Cursor::new(bytes.clone()), "x.npy", Format::Npy, layout)
+                DrawSource::from_reader_as(
+                    Cursor::new(bytes.clone()),
+                    "x.npy",
+                    NumberFormat::Npy,
+                    layout,
+                )
             };
             for k in 0..3 {
                 let draws = open(&layout(&k.to_string())).expect("a column");
@@ -166,7 +171,8 @@ mod tests {
     }
 
     fn refused(bytes: Vec<u8>, layout: &Layout) -> ForeignError {
-        let draws = Draws::from_reader_as(Cursor::new(bytes), "x.npy", Format::Npy, layout);
+        let draws =
+            DrawSource::from_reader_as(Cursor::new(bytes), "x.npy", NumberFormat::Npy, layout);
         draws.and_then(all).expect_err("an error")
     }
 

@@ -2,7 +2,7 @@
 
 use super::bytes::{self, Mistaken};
 use super::{Bytes, ForeignError, Layout};
-use media::files::number::Number;
+use media::files::number::NumberType;
 
 /// Number of bytes that are read at a time: they stay in the second-level cache until converted.
 const CHUNK: usize = 1 << 17;
@@ -11,7 +11,7 @@ const CHUNK: usize = 1 << 17;
 pub(super) struct Words {
     bytes: Bytes,
     file: String,
-    word: Number,
+    word: NumberType,
     /// Number of words that a header announces; the stream ends there.
     announced: Option<u64>,
     /// Number of words, if it is known.
@@ -31,8 +31,8 @@ pub(super) fn open(
     file: &str,
     length: Option<u64>,
     layout: &Layout,
-    word: Number,
-) -> Result<Rows, ForeignError> {
+    word: NumberType,
+) -> Result<NumberRows, ForeignError> {
     if layout.column.is_some() {
         return Err(ForeignError::NoColumns { file: file.to_owned() });
     }
@@ -66,11 +66,11 @@ pub(super) fn open(
     if let Some(numbers) = words.length.filter(|numbers| numbers % width as u64 != 0) {
         return Err(ForeignError::PartialRow { file, numbers, values: width });
     }
-    Ok(Rows::new(words, width, (0..width).collect(), false))
+    Ok(NumberRows::new(words, width, (0..width).collect(), false))
 }
 
 impl Words {
-    pub(super) fn new(bytes: Bytes, file: &str, word: Number, announced: Option<u64>) -> Self {
+    pub(super) fn new(bytes: Bytes, file: &str, word: NumberType, announced: Option<u64>) -> Self {
         Self {
             bytes,
             file: file.to_owned(),
@@ -158,7 +158,7 @@ impl Words {
 }
 
 /// Rows of numbers.
-pub(super) struct Rows {
+pub(super) struct NumberRows {
     words: Words,
     /// Number of numbers in a row.
     width: usize,
@@ -174,7 +174,7 @@ pub(super) struct Rows {
     numbers: u64,
 }
 
-impl Rows {
+impl NumberRows {
     pub(super) fn new(mut words: Words, width: usize, places: Vec<usize>, by_column: bool) -> Self {
         words.width = width as u64;
         Self { words, width, places, row: Vec::new(), by_column, all: None, numbers: 0 }
@@ -247,7 +247,7 @@ impl Rows {
 mod tests {
     use std::io::{Cursor, Read, Write};
 
-    use super::super::{Draws, Format, all};
+    use super::super::{DrawSource, NumberFormat, all};
     use super::*;
 
     /// Pipe that returns three bytes at a time.
@@ -275,7 +275,7 @@ mod tests {
         let mut values: Vec<f64> = (0..50_001).map(|i| f64::from(i).sqrt() - 100.0).collect();
         values[17] = f64::INFINITY;
         let file = file(&bytes(&values));
-        let mut draws = Draws::open(file.path(), Format::Raw).expect("draws");
+        let mut draws = DrawSource::open(file.path(), NumberFormat::Raw).expect("draws");
         assert_eq!(draws.known_length(), Some(50_001));
         let mut buffer = vec![f64::NAN; 3];
         assert_eq!(draws.read(&mut buffer, 20_000).expect("draws"), 20_000);
@@ -283,7 +283,7 @@ mod tests {
         assert_eq!(all(draws).expect("draws"), values[20_000..]);
 
         let pipe = Trickle(Cursor::new(bytes(&values)));
-        let draws = Draws::from_reader(pipe, "stdin", Format::Raw).expect("draws");
+        let draws = DrawSource::from_reader(pipe, "stdin", NumberFormat::Raw).expect("draws");
         assert_eq!(draws.known_length(), None);
         assert_eq!(all(draws).expect("draws"), values);
     }
@@ -296,9 +296,9 @@ mod tests {
         let zeros_and_ones: Vec<f32> = (0..500_u16).map(|i| f32::from(i % 3 / 2)).collect();
         for values in [&values, &zeros_and_ones] {
             let file = file(&singles(values));
-            let refused = Draws::open(file.path(), Format::Raw);
+            let refused = DrawSource::open(file.path(), NumberFormat::Raw);
             assert!(matches!(refused, Err(ForeignError::LooksSingle { .. })));
-            let read = all(Draws::open(file.path(), Format::RawSingle).expect("draws"));
+            let read = all(DrawSource::open(file.path(), NumberFormat::RawSingle).expect("draws"));
             assert!(read.expect("draws").iter().zip(values).all(|(x, y)| *x == f64::from(*y)));
         }
         // Doubles of all bits, of 24 bits, of few values and of single precision.
@@ -316,7 +316,7 @@ mod tests {
             let doubles: Vec<f64> = (0..500).map(|_| next()).collect();
             for doubles in [doubles.clone(), doubles.iter().map(rounded).collect()] {
                 let file = file(&bytes(&doubles));
-                assert!(Draws::open(file.path(), Format::Raw).is_ok(), "{bits} bits");
+                assert!(DrawSource::open(file.path(), NumberFormat::Raw).is_ok(), "{bits} bits");
             }
         }
     }
@@ -325,7 +325,8 @@ mod tests {
     fn every_bit_survives() {
         let nan = f64::from_bits(0x7ff8_0000_dead_beef);
         let file = file(&bytes(&[nan, -0.0, f64::MIN_POSITIVE / 4.0]));
-        let read = all(Draws::open(file.path(), Format::Raw).expect("draws")).expect("draws");
+        let read =
+            all(DrawSource::open(file.path(), NumberFormat::Raw).expect("draws")).expect("draws");
         let bits: Vec<u64> = read.iter().map(|x| x.to_bits()).collect();
         assert_eq!(bits, [nan.to_bits(), 1 << 63, 1 << 50]);
     }
@@ -333,9 +334,10 @@ mod tests {
     #[test]
     fn a_partial_draw_and_no_draw_are_refused() {
         let partial = [bytes(&[1.0, 2.0]), vec![1, 2, 3]].concat();
-        let open = |bytes: &[u8]| Draws::open(file(bytes).path(), Format::Raw);
-        let read =
-            |bytes: &[u8]| Draws::from_reader(Cursor::new(bytes.to_vec()), "stdin", Format::Raw);
+        let open = |bytes: &[u8]| DrawSource::open(file(bytes).path(), NumberFormat::Raw);
+        let read = |bytes: &[u8]| {
+            DrawSource::from_reader(Cursor::new(bytes.to_vec()), "stdin", NumberFormat::Raw)
+        };
         let is_partial =
             |error| matches!(error, ForeignError::PartialDraw { whole: 2, rest: 3, .. });
         assert!(is_partial(open(&partial).expect_err("a partial draw")));

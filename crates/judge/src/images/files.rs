@@ -16,9 +16,9 @@ use std::path::Path;
 
 use super::claim::ImageError;
 use super::picture::{Picture, Size, Stack};
-use media::files::exr::{self, Window};
+use media::files::exr::{self, PixelWindow};
 use media::files::npy::{self, Header};
-use media::files::number::Number;
+use media::files::number::NumberType;
 use media::files::{Pixels, pfm};
 use media::formats::Format;
 
@@ -186,7 +186,7 @@ impl Array {
         let header = npy::bytes(&mut source).map_err(unreadable)?;
         let array = npy::parse(&header)
             .map_err(|cause| faulty(cause.to_string(), "write it by numpy.save"))?;
-        let word = Number::float(&array.kind).ok_or_else(|| {
+        let word = NumberType::float(&array.kind).ok_or_else(|| {
             faulty(format!("its numbers are {}", array.kind), "save it as float64 or float32")
         })?;
         let shape =
@@ -232,7 +232,7 @@ const MAX_PIXELS: usize = 1 << 27;
 /// of black borders, pixels are placed in the display window, which must then be the same. Outside its data window a
 /// file is 0, and pixels beyond the display window are left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Frame(Option<Window>);
+pub struct Frame(Option<PixelWindow>);
 
 impl Frame {
     /// Returns the frame of files that are compared with each other.
@@ -280,7 +280,7 @@ impl Frame {
     }
 
     /// Places the pixels of a data window in the frame.
-    fn laid(self, pixels: Pixels, data: Window) -> Pixels {
+    fn laid(self, pixels: Pixels, data: PixelWindow) -> Pixels {
         let Self(Some(frame)) = self else { return pixels };
         let ([columns, rows], [width, height]) = (frame.size(), pixels.size);
         let channels = pixels.channels;
@@ -307,7 +307,7 @@ impl Frame {
 }
 
 /// Returns the data window and the display window of a picture; `None` without windows, or for an unreadable file.
-fn windows(path: &Path) -> Option<[Window; 2]> {
+fn windows(path: &Path) -> Option<[PixelWindow; 2]> {
     if Format::of(path) != Some(Format::Exr) {
         return None;
     }

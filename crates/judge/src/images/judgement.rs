@@ -43,11 +43,11 @@ pub struct Judgement {
     /// Test of the claimed variance.
     pub variance: Option<Variance>,
     /// Estimated variance; `None` for an exact one, or for none.
-    pub estimate: Option<Estimate>,
+    pub estimate: Option<VarianceEstimate>,
     /// Number of passes that the truth image is the mean of; `None` for an exact truth.
     pub truth_passes: Option<usize>,
     /// Comparison with a second stack; `None` if the truth is given.
-    pub comparison: Option<Comparison>,
+    pub comparison: Option<StackComparison>,
     /// Picture in the channel with the most obvious bias that the claimed variance does not show, with the standard error
     /// and z of the passes' own spread; `None` without such a bias.
     #[serde(skip)]
@@ -162,7 +162,7 @@ pub struct Variance {
 
 /// Variance that was estimated from passes.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct Estimate {
+pub struct VarianceEstimate {
     /// Number of passes that it was estimated from.
     pub passes: usize,
     /// Kurtosis of the values of the smallest tiles that the evidence relies on: measured, or given.
@@ -210,7 +210,7 @@ impl ComparisonMethod {
 
 /// Two stacks against each other.
 #[derive(Debug, Clone, Serialize)]
-pub struct Comparison {
+pub struct StackComparison {
     /// Number of passes of the reference.
     pub passes: usize,
     /// Test of equal distributions.

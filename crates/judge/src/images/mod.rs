@@ -70,7 +70,7 @@ const NOISY_VALUES: usize = 8192;
 
 /// Options of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct ImageOptions {
     /// Rows and columns of the smallest tiles; `None` for the smallest power of 2 with 2048 values in all passes, or with
     /// 8192 and a bound on the variance of every tile if the variance is an estimate.
     pub tile: Option<usize>,
@@ -81,13 +81,13 @@ pub struct Options {
     pub alpha: f64,
 }
 
-impl Default for Options {
+impl Default for ImageOptions {
     fn default() -> Self {
         Self { tile: None, tolerance: None, alpha: 1e-3 }
     }
 }
 
-impl Options {
+impl ImageOptions {
     fn check(&self) -> Result<(), ImageError> {
         let number = |what, value, wanted| Err(ImageError::Number { what, value, wanted });
         match *self {
@@ -118,7 +118,7 @@ impl Options {
 /// # Errors
 ///
 /// The claim or the options make no sense, or the claim has another size than the passes.
-pub fn judge(stack: &Stack, claim: &Claim, wanted: &Options) -> Result<Judgement, ImageError> {
+pub fn judge(stack: &Stack, claim: &Claim, wanted: &ImageOptions) -> Result<Judgement, ImageError> {
     wanted.check()?;
     let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
     let (size, alpha) = (stack.size, wanted.alpha);

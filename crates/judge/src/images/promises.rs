@@ -1,7 +1,7 @@
 //! Promises of verdicts on one stack and on two, and their assumptions.
 
 use super::claim::Claim;
-use super::judgement::{Comparison, ComparisonMethod, Judgement};
+use super::judgement::{ComparisonMethod, Judgement, StackComparison};
 use super::verdict::{self, has_variance};
 use numeric::digits::short;
 
@@ -94,7 +94,10 @@ pub(super) fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
 }
 
 /// Returns the promises of a verdict on two stacks.
-pub(super) fn guarantees_against(judgement: &Judgement, comparison: &Comparison) -> Vec<String> {
+pub(super) fn guarantees_against(
+    judgement: &Judgement,
+    comparison: &StackComparison,
+) -> Vec<String> {
     let alpha = judgement.alpha;
     let pixels = if comparison.method == ComparisonMethod::Signs {
         ", and pixels are independent,"

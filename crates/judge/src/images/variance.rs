@@ -89,9 +89,9 @@ impl Estimated {
         tile: usize,
         parts: &[Part],
         q: &[f64],
-    ) -> judgement::Estimate {
+    ) -> judgement::VarianceEstimate {
         let smallest = parts.iter().zip(q).filter(|(part, _)| part.size == tile);
-        judgement::Estimate {
+        judgement::VarianceEstimate {
             passes: self.passes,
             kurtosis: kurtosis(smallest.map(|(_, q)| *q).fold(0.0, f64::max)),
             is_given: claim.kurtosis.is_some(),

@@ -1,7 +1,7 @@
 //! Verdicts on one stack and on two, with their reasons; the order of the reasons is that of a session.
 
 use super::claim::{Claim, Pixels};
-use super::judgement::{Comparison, ComparisonMethod, Judgement, Refuted, Tile};
+use super::judgement::{ComparisonMethod, Judgement, Refuted, StackComparison, Tile};
 use super::picture::Stack;
 use super::promises::{guarantees, guarantees_against};
 use crate::{Reasons, SIDE_SHARE};
@@ -50,7 +50,11 @@ pub(super) fn decide(judgement: &mut Judgement, stack: &Stack, pixels: &Pixels, 
 
 /// Decides about two stacks, and adds the promises of the verdict. `differing` is the number of tiles that differ by
 /// the test of equal distributions alone.
-pub(super) fn decide_against(judgement: &mut Judgement, comparison: &Comparison, differing: usize) {
+pub(super) fn decide_against(
+    judgement: &mut Judgement,
+    comparison: &StackComparison,
+    differing: usize,
+) {
     let refuted = judgement.refuted_by.map(|refuted| {
         let Refuted { pass, row, column, value, .. } = refuted;
         let count = judgement.refuting;
@@ -398,7 +402,11 @@ pub(super) fn has_variance(claim: &Claim) -> bool {
 }
 
 /// Returns the reasons why two stacks that do not fail do not pass.
-fn open_against(judgement: &Judgement, comparison: &Comparison, differing: usize) -> Vec<String> {
+fn open_against(
+    judgement: &Judgement,
+    comparison: &StackComparison,
+    differing: usize,
+) -> Vec<String> {
     let mut open = Vec::new();
     if differing > 0 {
         let p = short(comparison.p, 2);

@@ -6,8 +6,8 @@ use crate::mutants::{self, About};
 use media::catalogue::{Page, suggestion};
 use trueflight::case::{Case, suite};
 use trueflight::cli::Console;
-use trueflight::cli::listing::{Row, print_pages, print_rows};
-use trueflight::cli::output::Format;
+use trueflight::cli::listing::{ListingRow, print_pages, print_rows};
+use trueflight::cli::output::RowFormat;
 
 /// Name of the part of the catalogue that lists the known bugs.
 const PART: &str = "known-bugs";
@@ -17,12 +17,12 @@ const PART: &str = "known-bugs";
 pub struct List {
     /// Form of the rows on stdout
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: RowFormat,
 }
 
 /// Prints the names with one sentence each.
 pub(super) fn list(arguments: &List, console: &Console) -> anyhow::Result<u8> {
-    let row = |(About { name, bug, .. }, _)| Row {
+    let row = |(About { name, bug, .. }, _)| ListingRow {
         part: PART.into(),
         name: str::to_owned(name),
         summary: str::to_owned(bug),

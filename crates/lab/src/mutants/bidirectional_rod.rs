@@ -7,7 +7,7 @@
 //! Connections through media were 12 % off in pbrt-v3 (issue 179), and wrong in pbrt-v4 (issues 83, 325). Numbers of equations are those of B. Miller, I. Georgiev,
 //! W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM Transactions on Graphics 38 (2019).
 
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::bidirectional_rod::Method;
 use estimators::bidirectional_rod::path::Path;
 use estimators::bidirectional_rod::subpath::Tracker;
@@ -60,7 +60,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Method, Bug>] = &[
+const LINES: &[MutantRow<Method, Bug>] = &[
     ("bidirectional-vertex-count", "the density of a technique counts one camera vertex too many: a ρ_s is left out", TECHNIQUE, CheckId::Mean, Bug::VertexCount),
     ("bidirectional-connection-reversed", "the phase function at the camera's end takes the connection the wrong way round (Eq. 43)", TECHNIQUE, CheckId::Mean, Bug::Reversed),
     ("bidirectional-wrong-segment", "the connection is tracked from the light's last vertex but one (middle factor of Eq. 44)", TECHNIQUE, CheckId::Mean, Bug::WrongSegment),

@@ -8,7 +8,7 @@
 //! Most of them keep `Σ w_λ X_λ = 1` in a furnace: they show only in single channels. Walks that are absorbed in a slab
 //! score nothing, and show no bug.
 
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::chromatic::{Chromatic, Right, WEIGHING, WalkEvents, WalkerWeights};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
@@ -49,7 +49,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_FURNACE: &[Line<Make, Bug>] = &[
+const IN_FURNACE: &[MutantRow<Make, Bug>] = &[
     ("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", FURNACE, CheckId::Mean, Bug::NullsLeftOut),
     ("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", FURNACE, CheckId::Mean, Bug::OtherMajorant),
     ("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", FURNACE, CheckId::Mean, Bug::PhaseOfHero),
@@ -62,7 +62,7 @@ const IN_FURNACE: &[Line<Make, Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_SLAB: &[Line<Make, Bug>] = &[
+const IN_SLAB: &[MutantRow<Make, Bug>] = &[
     ("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", SLAB, CheckId::Mean, Bug::NullsLeftOut),
     ("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", SLAB, CheckId::Mean, Bug::OtherMajorant),
     ("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", SLAB, CheckId::Mean, Bug::PhaseOfHero),
@@ -84,7 +84,7 @@ pub fn in_slab() -> Vec<Mutant<ChromaticSlab>> {
     mutants(IN_SLAB)
 }
 
-fn mutants<P: Chromatic>(lines: &[Line<Make, Bug>]) -> Vec<Mutant<P>> {
+fn mutants<P: Chromatic>(lines: &[MutantRow<Make, Bug>]) -> Vec<Mutant<P>> {
     family(lines, &Bug::None, |make, &bug| {
         let wrong = Wrong { bug, walker: make() };
         one_by_one(move |setup, medium, random| P::draw(&wrong, wrong.by(), setup, medium, random))

@@ -9,7 +9,7 @@
 //! variances, and no covariances.
 
 use super::line::{self, Notes, RIGHT, Slip};
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::transmittance_curve::double::Curve;
 use gate::CheckId;
@@ -39,7 +39,7 @@ const fn step(slip: Slip) -> Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<(), Bug>] = &[
+const LINES: &[MutantRow<(), Bug>] = &[
     ("curve-reversed", "σ_t(S − t) is looked up for σ_t(t)", PLAIN, CheckId::Curve, step(line::REVERSED)),
     ("curve-collision-too-early", "the first collision beyond a distance counts before it", PLAIN, CheckId::Mean, step(line::OF_LAST_COLLISION)),
     ("curve-shifted", "every value is that of the distance before, and the first is 1", PLAIN, CheckId::Mean, Bug { finish: shifted, ..NONE }),

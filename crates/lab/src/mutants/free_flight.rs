@@ -12,7 +12,7 @@
 
 use super::line::{self, End, Notes, RIGHT, Slip, single};
 use super::product::{Bug, hole, on_setups, short_ray, too_low};
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::free_flight::woodcock::Flights;
 use gate::CheckId;
 use numeric::Lane;
@@ -24,7 +24,7 @@ const FLIGHT: On<()> = on("free-flight/known-bugs", 0, ());
 const LINEAR: On<()> = on("free-flight/known-bugs", 1, ());
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<(), Bug<FreeFlight>>] = &[
+const LINES: &[MutantRow<(), Bug<FreeFlight>>] = &[
     ("free-flight-log2", "log2 for ln in the flight", FLIGHT, CheckId::Distances, Bug::Step(line::LOG2)),
     ("free-flight-at-previous", "σ_t is looked up where the flight began", FLIGHT, CheckId::Distances, Bug::Step(line::AT_PREVIOUS)),
     ("free-flight-at-midpoint", "σ_t is looked up at the flight's midpoint", FLIGHT, CheckId::Depth, Bug::Step(line::AT_MIDPOINT)),

@@ -29,31 +29,31 @@ use numeric::{Lane, ScalarLane, Span};
 use theory::problems::Channels;
 
 /// Function of the walk so far and of the correct number, which returns a wrong one; `None` for the correct one.
-pub type Change = Option<fn(&mut Notes, f64) -> f64>;
+pub type NumberChange = Option<fn(&mut Notes, f64) -> f64>;
 
 /// Function of the walk so far and of further uniform numbers, which returns the end of a walk that should go on, if it
 /// ends.
-pub type Ends = fn(&Notes, &mut dyn FnMut() -> f64) -> Option<End>;
+pub type EndFunction = fn(&Notes, &mut dyn FnMut() -> f64) -> Option<End>;
 
 /// A wrong step.
 #[derive(Clone, Copy)]
 pub struct Slip {
     /// The optical depth of a flight.
-    pub depth: Change,
+    pub depth: NumberChange,
     /// The uniform number of the decision at its end.
-    pub number: Change,
+    pub number: NumberChange,
     /// True if the first flight beyond the end collides at the end.
     pub collides_at_end: bool,
     /// The distance at which σ_t is looked up.
-    pub lookup: Change,
+    pub lookup: NumberChange,
     /// σ_t there.
-    pub found: Change,
+    pub found: NumberChange,
     /// σ_t with which the walk collides.
-    pub used: Change,
+    pub used: NumberChange,
     /// The distance of the collision, in functions of the distance.
-    pub place: Change,
+    pub place: NumberChange,
     /// The end.
-    pub ends: Option<Ends>,
+    pub ends: Option<EndFunction>,
     /// The score.
     pub score: Option<fn(&Notes, f64) -> f64>,
 }
@@ -112,7 +112,7 @@ pub struct Notes<'a> {
 impl Notes<'_> {
     /// Returns the correct number or the wrong one.
     #[inline(always)]
-    fn changed(&mut self, change: Change, right: f64) -> f64 {
+    fn changed(&mut self, change: NumberChange, right: f64) -> f64 {
         change.map_or(right, |change| change(self, right))
     }
 
@@ -138,11 +138,11 @@ pub fn draw<P: Estimated<Fields = ControlledLine, Value: Channels>>(
 ) -> Draw<P::Value> {
     compiled_once(
         #[inline(always)]
-        || One { walk, slip, setup, medium, random }.draw(),
+        || MutantDraw { walk, slip, setup, medium, random }.draw(),
     )
 }
 
-struct One<'a, W, P: Estimated> {
+struct MutantDraw<'a, W, P: Estimated> {
     walk: W,
     slip: &'a Slip,
     setup: &'a Setup<P>,
@@ -150,7 +150,7 @@ struct One<'a, W, P: Estimated> {
     random: &'a mut Stream,
 }
 
-impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> One<'_, W, P> {
+impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> MutantDraw<'_, W, P> {
     #[inline(always)]
     fn draw(self) -> Draw<P::Value> {
         let sampling = &self.setup.fields.sampling;

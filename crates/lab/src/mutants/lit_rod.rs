@@ -8,9 +8,9 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them.
 
 use super::altered::{Altered, Change};
-use super::{Line, Mutant, On, family, filled, on};
+use super::{Mutant, MutantRow, On, family, filled, on};
 use estimators::lit_rod::walk::{Path, Scatterers, ToEmitter};
-use estimators::setup::Line as Along;
+use estimators::setup::MutantRow as Along;
 use estimators::walks::{self, Route, TentativeCollision, Walk};
 use estimators::{Estimated, Setup};
 use gate::CheckId;
@@ -51,7 +51,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Techniques, Bug>] = &[
+const LINES: &[MutantRow<Techniques, Bug>] = &[
     ("lit-rod-last-segment", "Algorithm 2, line 9: the last segment's transmittance is in the densities, and not in f", FULL, CheckId::Mean, Bug::LastSegment),
     ("lit-rod-averaged", "the samples of both techniques are added, and divided by their number", FULL, CheckId::Mean, Bug::Averaged),
     ("lit-rod-hit-alone", "Algorithm 1 in the combination: hits are not divided by p_uni + p_nee", FULL, CheckId::Mean, Bug::HitAlone),

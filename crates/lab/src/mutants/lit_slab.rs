@@ -6,7 +6,7 @@
 
 use super::altered::{Altered, Change};
 use super::lit_rod::{balanced, flight_to_end, next_event};
-use super::{Line, Mutant, On, family, filled, on};
+use super::{Mutant, MutantRow, On, family, filled, on};
 use estimators::Setup;
 use estimators::lit_slab::walk::{Path, ToLight};
 use estimators::walks::{self, Route, TentativeCollision, Walk};
@@ -43,7 +43,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Techniques, Bug>] = &[
+const LINES: &[MutantRow<Techniques, Bug>] = &[
     ("lit-slab-cosine-missing", "the cosine at the disc is left out of p_nee: D²/(A μ²)", NEXT_EVENT, CheckId::Mean, Bug::CosineMissing),
     ("lit-slab-upright", "shadow rays fly as deep as if they went straight down", NEXT_EVENT, CheckId::Mean, Bug::Upright),
     ("lit-slab-reversed", "the phase function of a shadow ray is that of the reversed direction", NEXT_EVENT, CheckId::Mean, Bug::Reversed),

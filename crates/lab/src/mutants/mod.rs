@@ -47,7 +47,7 @@ pub use streams::StreamMutant;
 
 /// One experiment of a case of the built-in suite.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Target {
+pub struct MutantTarget {
     /// The case.
     pub case: &'static str,
     /// Index of the estimator in the case, from 0.
@@ -64,7 +64,7 @@ pub struct About {
     /// The bug in one sentence.
     pub bug: &'static str,
     /// The experiment that shows it.
-    pub target: Target,
+    pub target: MutantTarget,
     /// The check that must catch it there.
     pub check: CheckId,
 }
@@ -100,42 +100,42 @@ impl Caught {
 /// An experiment of the built-in suite, with the settings of the estimator that is drawn there.
 #[derive(Clone, Copy)]
 struct On<E> {
-    target: Target,
+    target: MutantTarget,
     estimator: E,
 }
 
 /// An estimator of a case without a sweep.
 const fn on<E: Copy>(case: &'static str, index: usize, estimator: E) -> On<E> {
-    On { target: Target { case, index, swept: None }, estimator }
+    On { target: MutantTarget { case, index, swept: None }, estimator }
 }
 
 impl<E: Copy> On<E> {
     /// The point of a sweep.
     const fn swept(self, value: f64) -> Self {
-        On { target: Target { swept: Some(value), ..self.target }, ..self }
+        On { target: MutantTarget { swept: Some(value), ..self.target }, ..self }
     }
 }
 
 /// A mutant in the table of its family: name, bug in one sentence, target, check, and the bug itself.
-type Line<E, B> = (&'static str, &'static str, On<E>, CheckId, B);
+type MutantRow<E, B> = (&'static str, &'static str, On<E>, CheckId, B);
 
 /// Function that makes the draws of a request, with or without a bug.
-type Draws<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
+type DrawFunction<P> = dyn Fn(&Setup<P>, Request) + Send + Sync;
 
 /// A known bug in an estimator of problem `P`.
 struct Mutant<P: Estimated> {
     about: About,
-    faulty: Arc<Draws<P>>,
-    control: Arc<Draws<P>>,
+    faulty: Arc<DrawFunction<P>>,
+    control: Arc<DrawFunction<P>>,
     /// Changes the setup to a wrong one.
     prepare: fn(&mut Setup<P>),
 }
 
 impl<P: Estimated> Mutant<P> {
     /// The experiment of a walk on a prepared `Setup<P>`; `None` for the setup of another problem.
-    fn experiment(&self, walk: Walk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
+    fn experiment(&self, walk: MutantWalk, setup: Box<dyn Any>) -> Option<Box<dyn Experiment>> {
         let mut setup = *setup.downcast::<Setup<P>>().ok()?;
-        if walk == Walk::Control {
+        if walk == MutantWalk::Control {
             return Some(Box::new(MutantExperiment { draws: self.control.clone(), setup }));
         }
         (self.prepare)(&mut setup);
@@ -145,7 +145,7 @@ impl<P: Estimated> Mutant<P> {
 
 /// Draws on a setup.
 struct MutantExperiment<P: Estimated> {
-    draws: Arc<Draws<P>>,
+    draws: Arc<DrawFunction<P>>,
     setup: Setup<P>,
 }
 
@@ -157,16 +157,16 @@ impl<P: Estimated> Experiment for MutantExperiment<P> {
 
 /// Mutants of a table. A bug and its control, with `right` in place of the bug, run the same code.
 fn family<P: Estimated, E, B, D>(
-    lines: &[Line<E, B>],
+    lines: &[MutantRow<E, B>],
     right: &B,
     draws: impl Fn(&E, &B) -> D,
 ) -> Vec<Mutant<P>>
 where
     D: Fn(&Setup<P>, Request) + Send + Sync + 'static,
 {
-    let mutant = |(name, bug, on, check, wrong): &Line<E, B>| Mutant {
+    let mutant = |(name, bug, on, check, wrong): &MutantRow<E, B>| Mutant {
         about: About { name, bug, target: on.target, check: *check },
-        faulty: Arc::new(draws(&on.estimator, wrong)) as Arc<Draws<P>>,
+        faulty: Arc::new(draws(&on.estimator, wrong)) as Arc<DrawFunction<P>>,
         control: Arc::new(draws(&on.estimator, right)),
         prepare: |_| {},
     };
@@ -196,7 +196,7 @@ fn one_by_one<P: Estimated>(
 
 /// One of a mutant's two walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Walk {
+pub enum MutantWalk {
     /// The walk with the bug.
     Faulty,
     /// The control: the code without the bug.

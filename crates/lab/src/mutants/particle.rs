@@ -12,12 +12,12 @@
 //! ```
 
 use super::altered::{Altered, Change, Renumbered};
-use super::{Line, Mutant, On, family, filled, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, filled, on, one_by_one};
 use estimators::Setup;
 use estimators::rod::walk::{self as rod, InRod, RuleAndRoulette};
 use estimators::slab::walk::{self as slab, InSlab};
 use estimators::space::walk::{InSpace, State};
-use estimators::space::{Particle, Splitting, Tally, Walked, draws};
+use estimators::space::{ParticleSettings, Splitting, Tally, Walked, draws};
 use estimators::walks::{self, Route, TentativeCollision, Walk};
 use gate::CheckId;
 use media::sampling::BothWays;
@@ -30,45 +30,48 @@ use theory::collisions::particle::EventProbabilities;
 use theory::problems::{Furnace, InfiniteMedium, Lambertian, Rod, Slab};
 
 /// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.
-const ROD_TERMINATING: On<Particle> = on("rod/known-bugs", 0, of(Terminating));
-const ROD_ANALOG: On<Particle> = on("rod/known-bugs", 1, of(Analog));
-const ROD_WEIGHTED: On<Particle> = on("rod/known-bugs", 2, of(Weighted));
+const ROD_TERMINATING: On<ParticleSettings> = on("rod/known-bugs", 0, of(Terminating));
+const ROD_ANALOG: On<ParticleSettings> = on("rod/known-bugs", 1, of(Analog));
+const ROD_WEIGHTED: On<ParticleSettings> = on("rod/known-bugs", 2, of(Weighted));
 /// `σ̂ = 0.9`, below σ_t at both ends.
-const ROD_NON_TERMINATING: On<Particle> = on("rod/known-bugs", 3, of(NonTerminating));
-const ROD_ADAPTIVE: On<Particle> = on("rod/known-bugs", 4, of(Adaptive));
+const ROD_NON_TERMINATING: On<ParticleSettings> = on("rod/known-bugs", 3, of(NonTerminating));
+const ROD_ADAPTIVE: On<ParticleSettings> = on("rod/known-bugs", 4, of(Adaptive));
 /// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
-const ROD_ROULETTE: On<Particle> = on("rod/roulette", 0, playing(NonTerminating, 0.5));
+const ROD_ROULETTE: On<ParticleSettings> = on("rod/roulette", 0, playing(NonTerminating, 0.5));
 /// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
-const SLAB_ANALOG: On<Particle> = on("slab/known-bugs", 0, of(Analog));
-const SLAB_WEIGHTED: On<Particle> = on("slab/known-bugs", 1, of(Weighted));
+const SLAB_ANALOG: On<ParticleSettings> = on("slab/known-bugs", 0, of(Analog));
+const SLAB_WEIGHTED: On<ParticleSettings> = on("slab/known-bugs", 1, of(Weighted));
 /// `σ̂ = 0.9`, below σ_t at both ends.
-const SLAB_NON_TERMINATING: On<Particle> = on("slab/known-bugs", 2, of(NonTerminating));
-const SLAB_ADAPTIVE: On<Particle> = on("slab/known-bugs", 3, of(Adaptive));
+const SLAB_NON_TERMINATING: On<ParticleSettings> = on("slab/known-bugs", 2, of(NonTerminating));
+const SLAB_ADAPTIVE: On<ParticleSettings> = on("slab/known-bugs", 3, of(Adaptive));
 /// Diffuse light, a σ̂ in steps.
-const SLAB_DIFFUSE: On<Particle> = on("slab/known-bugs-diffuse", 0, of(NonTerminating));
+const SLAB_DIFFUSE: On<ParticleSettings> = on("slab/known-bugs-diffuse", 0, of(NonTerminating));
 /// A thin ball, a = 0.9, `r = 1.15`.
-const FURNACE_BELOW: On<Particle> = on("furnace/known-bugs", 0, of(NonTerminating));
+const FURNACE_BELOW: On<ParticleSettings> = on("furnace/known-bugs", 0, of(NonTerminating));
 /// `σ̂ = 1.2`.
-const FURNACE_NON_TERMINATING: On<Particle> = on("furnace/known-bugs", 1, of(NonTerminating));
+const FURNACE_NON_TERMINATING: On<ParticleSettings> =
+    on("furnace/known-bugs", 1, of(NonTerminating));
 /// Roulette below 0.8.
-const FURNACE_ROULETTE: On<Particle> = on("furnace/known-bugs", 2, playing(NonTerminating, 0.8));
-const FURNACE_ANALOG: On<Particle> = on("furnace/known-bugs", 3, of(Analog));
+const FURNACE_ROULETTE: On<ParticleSettings> =
+    on("furnace/known-bugs", 2, playing(NonTerminating, 0.8));
+const FURNACE_ANALOG: On<ParticleSettings> = on("furnace/known-bugs", 3, of(Analog));
 /// Henyey–Greenstein, g = 0.6, a = 0.7.
-const INFINITE_ANALOG: On<Particle> = on("infinite-medium/known-bugs", 0, of(Analog));
+const INFINITE_ANALOG: On<ParticleSettings> = on("infinite-medium/known-bugs", 0, of(Analog));
 /// Roulette below 0.5.
-const INFINITE_WEIGHTED: On<Particle> = on("infinite-medium/known-bugs", 1, playing(Weighted, 0.5));
+const INFINITE_WEIGHTED: On<ParticleSettings> =
+    on("infinite-medium/known-bugs", 1, playing(Weighted, 0.5));
 /// Eq. 21, a = 1, `σ̂ = 1`.
-const LAMBERTIAN: On<Particle> = on("lambertian/known-bugs", 0, of(NonTerminating));
+const LAMBERTIAN: On<ParticleSettings> = on("lambertian/known-bugs", 0, of(NonTerminating));
 /// A dense half and a thin one, a cell each.
-const LAMBERTIAN_CELLS: On<Particle> = on("lambertian/known-bugs-cells", 0, of(Analog));
+const LAMBERTIAN_CELLS: On<ParticleSettings> = on("lambertian/known-bugs-cells", 0, of(Analog));
 
-const fn of(rule: ParticleRule) -> Particle {
-    Particle { rule, roulette: None, splitting: Splitting::None }
+const fn of(rule: ParticleRule) -> ParticleSettings {
+    ParticleSettings { rule, roulette: None, splitting: Splitting::None }
 }
 
 /// A particle that plays roulette below a weight.
-const fn playing(rule: ParticleRule, below: f64) -> Particle {
-    Particle { roulette: Some(below), ..of(rule) }
+const fn playing(rule: ParticleRule, below: f64) -> ParticleSettings {
+    ParticleSettings { roulette: Some(below), ..of(rule) }
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -92,7 +95,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_ROD: &[Line<Particle, Bug>] = &[
+const IN_ROD: &[MutantRow<ParticleSettings, Bug>] = &[
     ("rod-albedo-twice", "the albedo is a chance and a weight", ROD_TERMINATING, CheckId::Mean, Bug::AlbedoTwice),
     ("rod-albedo-in-transmission", "what goes straight on is multiplied by the albedo too", ROD_WEIGHTED, CheckId::Mean, Bug::AlbedoStraightOn),
     ("rod-terminating-beyond", "the terminating rule where r > 2/(a + 1)", ROD_ADAPTIVE, CheckId::Mean, Bug::Rule(Terminating)),
@@ -105,7 +108,7 @@ const IN_ROD: &[Line<Particle, Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_SLAB: &[Line<Particle, Bug>] = &[
+const IN_SLAB: &[MutantRow<ParticleSettings, Bug>] = &[
     ("slab-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", SLAB_ANALOG, CheckId::Mean, Bug::Backward),
     ("slab-albedo-twice", "the albedo is a chance and a weight", SLAB_NON_TERMINATING, CheckId::Mean, Bug::AlbedoTwice),
     ("slab-albedo-by-roulette-and-weight", "absorption by roulette and by weight at once", SLAB_WEIGHTED, CheckId::Mean, Bug::AnalogAndWeighted),
@@ -116,7 +119,7 @@ const IN_SLAB: &[Line<Particle, Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_FURNACE: &[Line<Particle, Bug>] = &[
+const IN_FURNACE: &[MutantRow<ParticleSettings, Bug>] = &[
     ("furnace-albedo-twice", "the albedo is a chance and a weight", FURNACE_NON_TERMINATING, CheckId::Mean, Bug::AlbedoTwice),
     ("furnace-roulette-uncompensated", "who survives roulette keeps the old weight", FURNACE_ROULETTE, CheckId::Mean, Bug::Uncompensated),
     ("furnace-terminating-beyond", "the terminating rule where r > 2/(a + 1)", FURNACE_BELOW, CheckId::Mean, Bug::Rule(Terminating)),
@@ -124,7 +127,7 @@ const IN_FURNACE: &[Line<Particle, Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_INFINITE_MEDIUM: &[Line<Particle, Bug>] = &[
+const IN_INFINITE_MEDIUM: &[MutantRow<ParticleSettings, Bug>] = &[
     ("infinite-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", INFINITE_ANALOG, CheckId::Mean, Bug::Backward),
     ("infinite-turned-about-z", "a particle turns about the z axis, not about its direction", INFINITE_ANALOG, CheckId::Mean, Bug::AboutZ),
     ("infinite-albedo-twice", "absorption by weight and by roulette at once", INFINITE_WEIGHTED, CheckId::Mean, Bug::AlbedoTwice),
@@ -132,7 +135,7 @@ const IN_INFINITE_MEDIUM: &[Line<Particle, Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const UNDER_LIGHT: &[Line<Particle, Bug>] = &[
+const UNDER_LIGHT: &[MutantRow<ParticleSettings, Bug>] = &[
     ("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, CheckId::Mean, Bug::EvenLight),
     ("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, CheckId::Mean, Bug::StaleMajorant),
 ];
@@ -140,7 +143,7 @@ const UNDER_LIGHT: &[Line<Particle, Bug>] = &[
 /// Mutants in a rod.
 pub fn in_rod() -> Vec<Mutant<Rod>> {
     family(IN_ROD, &Bug::None, |&right, &bug| {
-        let Particle { rule, roulette, .. } = bug.particle(right);
+        let ParticleSettings { rule, roulette, .. } = bug.particle(right);
         filled(move |setup: &Setup<Rod>, request| {
             let walk = InRod { rod: &setup.problem, steps: RuleAndRoulette { rule, roulette } };
             walks::in_turn(&Altered { walk, change: bug }, setup, request);
@@ -174,7 +177,7 @@ pub fn under_light() -> Vec<Mutant<Lambertian>> {
     in_space(UNDER_LIGHT)
 }
 
-fn in_space<P: Walked>(lines: &[Line<Particle, Bug>]) -> Vec<Mutant<P>> {
+fn in_space<P: Walked>(lines: &[MutantRow<ParticleSettings, Bug>]) -> Vec<Mutant<P>> {
     family(lines, &Bug::None, |&right, &bug| {
         let particle = bug.particle(right);
         one_by_one(move |setup: &Setup<P>, _, random| {
@@ -192,7 +195,7 @@ fn in_space<P: Walked>(lines: &[Line<Particle, Bug>]) -> Vec<Mutant<P>> {
 
 impl Bug {
     /// The particle that walks: the right one, or one with another rule.
-    fn particle(self, right: Particle) -> Particle {
+    fn particle(self, right: ParticleSettings) -> ParticleSettings {
         match self {
             Self::Rule(rule) => of(rule),
             Self::AnalogAndWeighted => of(Analog),
@@ -227,7 +230,7 @@ impl Change<InRod<'_>> for Bug {
     fn collide<L: Lane>(
         &self,
         walk: &InRod,
-        particle: &mut rod::Particle<L>,
+        particle: &mut rod::ParticleSettings<L>,
         route: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
@@ -257,7 +260,7 @@ impl Change<InSlab<'_>> for Bug {
         one: L,
         which: L::Mask,
         random: &mut impl Random<L>,
-    ) -> slab::Particle<L> {
+    ) -> slab::ParticleSettings<L> {
         let mut particle = walk.begin(one, which, random);
         if *self == Self::EvenLight {
             // √(1 − u) becomes 1 − u.
@@ -269,7 +272,7 @@ impl Change<InSlab<'_>> for Bug {
     fn fly<L: Lane>(
         &self,
         walk: &InSlab,
-        particle: &mut slab::Particle<L>,
+        particle: &mut slab::ParticleSettings<L>,
         route: &mut Route<impl BothWays<L>>,
         depth: L,
     ) -> L::Mask {
@@ -285,7 +288,7 @@ impl Change<InSlab<'_>> for Bug {
     fn collide<L: Lane>(
         &self,
         walk: &InSlab,
-        particle: &mut slab::Particle<L>,
+        particle: &mut slab::ParticleSettings<L>,
         route: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         random: &mut impl Random<L>,

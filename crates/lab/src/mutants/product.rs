@@ -30,7 +30,7 @@
 
 use super::line::{self, End, Notes, RIGHT, Slip, single};
 use super::rule::{ALBEDO, Mistake, Wrong, literal, surviving, weighing};
-use super::{Draws, Line, Mutant, On, family, on, one_by_one};
+use super::{DrawFunction, Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::setup::ControlledLine;
 use estimators::transmittance::product::Product;
 use estimators::{Estimated, Request, Setup};
@@ -41,33 +41,37 @@ use theory::collisions::rules::{Collision, Null, Single, Weight};
 use theory::problems::Transmittance;
 
 /// `σ̂ = 1.2`, a majorant.
-const WOODCOCK: On<Rule> = known(0, Rule::Null);
+const WOODCOCK: On<MutantRule> = known(0, MutantRule::Null);
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-const BELOW: On<Rule> = known(1, Rule::Weight);
+const BELOW: On<MutantRule> = known(1, MutantRule::Weight);
 /// `σ̂ = 30`: 90 lookups a draw, a relative standard deviation of a quarter.
-const DENSE: On<Rule> = known(2, Rule::Weight);
+const DENSE: On<MutantRule> = known(2, MutantRule::Weight);
 /// A linear σ̂.
-pub const LINEAR: On<Rule> = known(3, Rule::Weight);
+pub const LINEAR: On<MutantRule> = known(3, MutantRule::Weight);
 /// A piecewise-constant σ̂.
-const STEPS: On<Rule> = known(4, Rule::Weight);
+const STEPS: On<MutantRule> = known(4, MutantRule::Weight);
 /// A control through five points, `σ̂ = 0.5`.
-const EXPLORERS: On<Rule> = known(5, Rule::Weight);
+const EXPLORERS: On<MutantRule> = known(5, MutantRule::Weight);
 /// `σ_c = 0.9`, `σ̂ = 1`, `−0.5 ≤ r ≤ 0.2`.
-const NEGATIVE: On<Rule> = known(6, Rule::Weight);
+const NEGATIVE: On<MutantRule> = known(6, MutantRule::Weight);
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-const TERMINATING: On<Rule> = known(7, Rule::Single(Single::Terminating));
+const TERMINATING: On<MutantRule> = known(7, MutantRule::Single(Single::Terminating));
 /// `σ_c = 0.55`, `σ̂ = 0.22`, `−0.7 ≤ r ≤ 2.5`.
-const CLAMPED: On<Rule> = known(8, Rule::Single(Single::Clamped));
+const CLAMPED: On<MutantRule> = known(8, MutantRule::Single(Single::Clamped));
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-const NON_TERMINATING: On<Rule> = known(9, Rule::Single(Single::NonTerminating { albedo: ALBEDO }));
+const NON_TERMINATING: On<MutantRule> =
+    known(9, MutantRule::Single(Single::NonTerminating { albedo: ALBEDO }));
 /// `σ_c = 0.55`, `σ̂ = 0.4`, `−0.4 ≤ r ≤ 1.4`.
-const ADAPTIVE: On<Rule> = known(10, Rule::Single(Single::Adaptive { albedo: ALBEDO }));
+const ADAPTIVE: On<MutantRule> = known(10, MutantRule::Single(Single::Adaptive { albedo: ALBEDO }));
 /// An optical depth of 110, nearly all of it in the control.
-const DEEP: On<Rule> = on("transmittance/deep", 0, Rule::Weight);
+const DEEP: On<MutantRule> = on("transmittance/deep", 0, MutantRule::Weight);
 /// `r = 1` and `r = 0` exactly.
-const RATIO_ONE: On<Rule> =
-    on("transmittance/ratio-exactly-one", 0, Rule::Single(Single::NonTerminating { albedo: 0.0 }))
-        .swept(0.0);
+const RATIO_ONE: On<MutantRule> = on(
+    "transmittance/ratio-exactly-one",
+    0,
+    MutantRule::Single(Single::NonTerminating { albedo: 0.0 }),
+)
+.swept(0.0);
 
 /// An experiment of the case that was made for known bugs: an asymmetric medium, dense at both ends, and estimators for every
 /// regime of r.
@@ -77,7 +81,7 @@ pub const fn known<E: Copy>(index: usize, estimator: E) -> On<E> {
 
 /// The correct rule at a collision.
 #[derive(Clone, Copy)]
-pub enum Rule {
+pub enum MutantRule {
     Weight,
     Null,
     Single(Single),
@@ -103,7 +107,7 @@ impl<P: Estimated> Bug<P> {
 const PERIOD: usize = 1024;
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Rule, Bug<Transmittance>>] = &[
+const LINES: &[MutantRow<MutantRule, Bug<Transmittance>>] = &[
     ("control-forgotten", "T_c is left out of the draw", NEGATIVE, CheckId::Mean, Bug::Setup(|setup| setup.fields.control_curve = vec![1.0])),
     ("control-to-last-collision", "the control is integrated up to the last collision only", NEGATIVE, CheckId::Mean, Bug::Step(Slip { score: Some(|walk, x| x * Lane::exp(walk.control_depth(walk.from, walk.support.to))), ..RIGHT })),
     ("control-riemann", "∫σ_c is a sum of eight left values", EXPLORERS, CheckId::Mean, Bug::Setup(riemann)),
@@ -165,10 +169,10 @@ const LINES: &[Line<Rule, Bug<Transmittance>>] = &[
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let draws = |rule: &Rule, bug: &Bug<_>| match *rule {
-        Rule::Weight => by_rule(Weight, bug),
-        Rule::Null => by_rule(Null, bug),
-        Rule::Single(rule) => by_rule(rule, bug),
+    let draws = |rule: &MutantRule, bug: &Bug<_>| match *rule {
+        MutantRule::Weight => by_rule(Weight, bug),
+        MutantRule::Null => by_rule(Null, bug),
+        MutantRule::Single(rule) => by_rule(rule, bug),
     };
     on_setups(family(LINES, &Bug::Step(RIGHT), draws), LINES)
 }
@@ -176,7 +180,7 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
 /// Mutants with bugs in their setups.
 pub fn on_setups<P: Estimated, E>(
     mutants: Vec<Mutant<P>>,
-    lines: &[Line<E, Bug<P>>],
+    lines: &[MutantRow<E, Bug<P>>],
 ) -> Vec<Mutant<P>> {
     let each = mutants.into_iter().zip(lines).map(|(mutant, line)| match line.4 {
         Bug::Setup(prepare) => Mutant { prepare, ..mutant },
@@ -185,7 +189,7 @@ pub fn on_setups<P: Estimated, E>(
     each.collect()
 }
 
-fn by_rule<R: Collision>(rule: R, bug: &Bug<Transmittance>) -> Box<Draws<Transmittance>> {
+fn by_rule<R: Collision>(rule: R, bug: &Bug<Transmittance>) -> Box<DrawFunction<Transmittance>> {
     let mistake = if let Bug::Rule(mistake) = *bug { Some(mistake) } else { None };
     let (rule, slip) = (Wrong { rule, mistake }, bug.slip());
     let draws = one_by_one(move |setup, medium, random| {

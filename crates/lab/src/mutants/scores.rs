@@ -12,7 +12,7 @@
 
 use super::line::{self, RIGHT, Slip};
 use super::product::known;
-use super::{Line, Mutant, On, family, one_by_one};
+use super::{Mutant, MutantRow, On, family, one_by_one};
 use estimators::transmittance::decomposition::Residual;
 use estimators::transmittance::local_majorant::Segments;
 use estimators::transmittance::next_flight::NextFlight;
@@ -28,23 +28,24 @@ use theory::collisions::rules::Weight;
 use theory::problems::Transmittance;
 
 /// Function that makes a draw, with or without a bug.
-type Drawing = fn(&Setup<Transmittance>, &Lookups, &mut Stream) -> Draw;
+type ScoreFunction = fn(&Setup<Transmittance>, &Lookups, &mut Stream) -> Draw;
 
 /// `σ̂ = 0.6`, below σ_t.
-const BELOW: On<Drawing> = known(1, ratio);
+const BELOW: On<ScoreFunction> = known(1, ratio);
 /// `σ̂ = 30`: 90 lookups a draw.
-const DENSE: On<Drawing> = known(2, ratio);
+const DENSE: On<ScoreFunction> = known(2, ratio);
 /// `σ_c = 0.3`, `σ̂ = 0.9`.
-const DECOMPOSITION: On<Drawing> = known(11, |s, m, r| decomposition(Residual::new(s), s, m, r));
+const DECOMPOSITION: On<ScoreFunction> =
+    known(11, |s, m, r| decomposition(Residual::new(s), s, m, r));
 /// Three segments.
-const LOCAL_MAJORANT: On<Drawing> = known(12, |s, m, r| in_segments(&RIGHT, s, m, r));
+const LOCAL_MAJORANT: On<ScoreFunction> = known(12, |s, m, r| in_segments(&RIGHT, s, m, r));
 /// `σ̂ = 1`.
-const NEXT_FLIGHT: On<Drawing> = known(13, |s, m, r| scored(NextFlight, &RIGHT, s, m, r));
+const NEXT_FLIGHT: On<ScoreFunction> = known(13, |s, m, r| scored(NextFlight, &RIGHT, s, m, r));
 /// `σ̂ = 1`.
-const MIS: On<Drawing> = known(14, |s, m, r| scored(UnidirectionalMis, &RIGHT, s, m, r));
+const MIS: On<ScoreFunction> = known(14, |s, m, r| scored(UnidirectionalMis, &RIGHT, s, m, r));
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Drawing, Option<Drawing>>] = &[
+const LINES: &[MutantRow<ScoreFunction, Option<ScoreFunction>>] = &[
     ("next-flight-without-first", "the chance to fly from the beginning straight to the end is left out", NEXT_FLIGHT, CheckId::Mean, Some(|s, m, r| scored(NextFlight, &Slip { score: Some(|walk, x| x - walk.first), ..RIGHT }, s, m, r))),
     ("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, CheckId::Mean, Some(|s, m, r| scored(NextFlight, &Slip { score: Some(|walk, x| x + walk.weight), ..RIGHT }, s, m, r))),
     ("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, CheckId::Mean, Some(|s, m, r| scored(WithoutFlight, &RIGHT, s, m, r))),

@@ -8,7 +8,7 @@
 //! Such mistakes made single scattering too bright in pbrt-v3 (issue 69).
 
 use super::altered::{Altered, Change};
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::single_scattering::points::{Absorption, Vertices};
 use estimators::single_scattering::ray_setup::RaySetup;
 use estimators::single_scattering::vertices::{Path, ToVertices, Vertex};
@@ -25,21 +25,21 @@ use theory::problems::{Problem, SingleScattering};
 use theory::single::{CameraTracking, Tracking};
 
 /// The points of an estimator, and its shadow rays.
-type Plan = (Vertices, Tracking);
+type MutantPlan = (Vertices, Tracking);
 
 /// A homogeneous ball, light outside, exact transmittances.
-const EXACT: On<Plan> = on("single-scattering/known-bugs", 0, (EXACTLY, Tracking::Exact));
+const EXACT: On<MutantPlan> = on("single-scattering/known-bugs", 0, (EXACTLY, Tracking::Exact));
 /// A ratio-tracked camera.
-const RATIO: On<Plan> = on("single-scattering/known-bugs", 1, (TRACKED, Tracking::Exact));
+const RATIO: On<MutantPlan> = on("single-scattering/known-bugs", 1, (TRACKED, Tracking::Exact));
 /// Ratio-tracked shadow rays, as in all that follow.
-const SHADOW: On<Plan> = on("single-scattering/known-bugs", 2, (EXACTLY, SHADOW_RAYS));
+const SHADOW: On<MutantPlan> = on("single-scattering/known-bugs", 2, (EXACTLY, SHADOW_RAYS));
 /// Equiangular points and delta tracking by null-scattering paths, `σ̂ = 1.2`.
-const NULL_PATHS: On<Plan> = on("single-scattering/known-bugs", 3, (BOTH, SHADOW_RAYS));
+const NULL_PATHS: On<MutantPlan> = on("single-scattering/known-bugs", 3, (BOTH, SHADOW_RAYS));
 /// One of both.
-const ONE_SAMPLE: On<Plan> =
+const ONE_SAMPLE: On<MutantPlan> =
     on("single-scattering/known-bugs", 4, (Vertices { is_one: true, ..BOTH }, SHADOW_RAYS));
 /// Both, by the power heuristic.
-const POWER: On<Plan> = on(
+const POWER: On<MutantPlan> = on(
     "single-scattering/known-bugs",
     5,
     (Vertices { heuristic: Heuristic::Power, ..BOTH }, SHADOW_RAYS),
@@ -72,7 +72,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Plan, Bug>] = &[
+const LINES: &[MutantRow<MutantPlan, Bug>] = &[
     ("single-shadow-not-clipped", "the shadow ray goes on through the field beyond the bounds of the volume", EXACT, CheckId::Mean, Bug::Unclipped),
     ("single-cosine-reversed", "the cosine in the phase function has the wrong sign", EXACT, CheckId::Mean, Bug::Reversed),
     ("single-pdf-per-angle", "the density is per angle, 1/Δθ, and the integrand per distance", EXACT, CheckId::Mean, Bug::PerAngle),
@@ -116,7 +116,7 @@ struct Wrong<'a> {
 impl Wrong<'_> {
     fn draw<const COLLIDES: bool>(
         self,
-        (points, shadow): Plan,
+        (points, shadow): MutantPlan,
         medium: &Lookups,
         random: &mut Stream,
     ) -> Draw {

@@ -10,7 +10,7 @@
 //!
 //! `spectral-own-density`, a wrong density for each channel, is issue 323 of Mitsuba 2.
 
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::Setup;
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_transmittance::events::{Right, WalkEvents};
@@ -24,22 +24,22 @@ use theory::problems::SpectralTransmittance;
 use theory::ray::spectral::Tracker;
 
 /// A tracker; true if all channels have one σ̂.
-type Plan = (Tracker, bool);
+type TrackerPlan = (Tracker, bool);
 
 /// Three layers in three channels, one channel a draw.
-const INDEPENDENT: On<Plan> =
+const INDEPENDENT: On<TrackerPlan> =
     on("transmittance/spectral-layers", 0, (Tracker::Independent { delta: true }, false));
 /// All channels by one walk, `σ̂ = 1.6, 1.1, 1.9`.
-const MIS_RATIO: On<Plan> =
+const MIS_RATIO: On<TrackerPlan> =
     on("transmittance/spectral-layers", 4, (Tracker::Mis { delta: false }, false));
 /// All channels by delta tracking.
-const MIS_DELTA: On<Plan> =
+const MIS_DELTA: On<TrackerPlan> =
     on("transmittance/spectral-layers", 5, (Tracker::Mis { delta: true }, false));
 /// Spectral tracking, `σ̂ = 1.9` for all channels, by the largest probabilities.
-const MAXIMUM: On<Plan> =
+const MAXIMUM: On<TrackerPlan> =
     on("transmittance/spectral-layers", 9, (Tracker::Tracking(Chance::Maximum), true));
 /// Spectral tracking, `σ̂ = 1.9` for all channels, by the history.
-const HISTORY: On<Plan> =
+const HISTORY: On<TrackerPlan> =
     on("transmittance/spectral-layers", 10, (Tracker::Mis { delta: true }, true));
 
 #[derive(Clone, Copy, PartialEq)]
@@ -60,7 +60,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Plan, Bug>] = &[
+const LINES: &[MutantRow<TrackerPlan, Bug>] = &[
     ("spectral-choice-free", "the one channel that is drawn is not divided by its probability", INDEPENDENT, CheckId::Mean, Bug::ChoiceFree),
     ("spectral-grey", "what the hero finds is scored for all channels", INDEPENDENT, CheckId::Mean, Bug::Grey),
     ("spectral-channel-dropped", "the last channel is missing from the denominator", MIS_RATIO, CheckId::Mean, Bug::Dropped),

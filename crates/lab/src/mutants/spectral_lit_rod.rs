@@ -8,10 +8,10 @@
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), as printed, or ways to read them. A run of
 //! `cases/rod/spectral-lit-as-printed.toml` shows the bias of the printed ones.
 
-use super::{Draws, Line, Mutant, On, family, on, one_by_one};
+use super::{DrawFunction, Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
-use estimators::spectral_lit_rod::events::{Technique, WalkEvents};
+use estimators::spectral_lit_rod::events::{PathTechnique, WalkEvents};
 use estimators::spectral_lit_rod::walk::draw;
 use estimators::walks::hero::{LastPiece, Weighing};
 use gate::CheckId;
@@ -42,7 +42,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Casts, Bug>] = &[
+const LINES: &[MutantRow<Casts, Bug>] = &[
     ("spectral-lit-last-piece", "Algorithm 2, line 9: f and both densities lack the transmittance of the last piece", FULL, CheckId::Mean, Bug::Printed(Error::LastPiece)),
     ("spectral-lit-averaged", "Algorithm 2, line 9: the densities are averaged over 2N techniques, and both samples are added", FULL, CheckId::Mean, Bug::Printed(Error::Average)),
     ("spectral-lit-hits-alone", "Algorithm 1 beside shadow rays: hits are divided by p_uni, not by p_uni + p_nee", FULL, CheckId::Mean, Bug::Printed(Error::HitsAlone)),
@@ -70,7 +70,7 @@ pub fn mutants() -> Vec<Mutant<SpectralLitRod>> {
     })
 }
 
-fn by(steps: impl WalkEvents + Send + 'static) -> Box<Draws<SpectralLitRod>> {
+fn by(steps: impl WalkEvents + Send + 'static) -> Box<DrawFunction<SpectralLitRod>> {
     Box::new(one_by_one(move |setup, medium, random| draw(&steps, setup, medium, random)))
 }
 
@@ -95,15 +95,15 @@ impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> WalkEvents
         self.casts
     }
 
-    fn weighing(&self, found: Technique) -> Weighing {
-        let has_next_event = self.casts && found != Technique::Unscattered;
+    fn weighing(&self, found: PathTechnique) -> Weighing {
+        let has_next_event = self.casts && found != PathTechnique::Unscattered;
         let right = Weighing { has_next_event, ..Weighing::RIGHT };
         match (self.bug, found) {
-            (Bug::ExitMissing, Technique::Hit | Technique::Unscattered) => {
+            (Bug::ExitMissing, PathTechnique::Hit | PathTechnique::Unscattered) => {
                 Weighing { last_piece: LastPiece::InContribution, ..right }
             }
             (Bug::Dropped, _) => Weighing { missing: 1, ..right },
-            (Bug::NullsInOne, Technique::Connected) => Weighing { has_nulls: false, ..right },
+            (Bug::NullsInOne, PathTechnique::Connected) => Weighing { has_nulls: false, ..right },
             (Bug::UnscatteredWeighted, _) => Weighing { has_next_event: true, ..right },
             _ => right,
         }

@@ -1,6 +1,6 @@
 //! Wrong walks through rods and slabs of coloured scatterers.
 
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::spectral_rod::Coloured;
 use estimators::spectral_rod::walk::{HeroWeights, draw, relative_to};
@@ -10,19 +10,19 @@ use theory::problems::{SpectralRod, SpectralSlab};
 
 /// The balance heuristic, or spectral tracking by the mean albedo.
 #[derive(Clone, Copy, PartialEq)]
-enum Walker {
+enum MutantWalker {
     Mis,
     Tracking,
 }
 
 /// Albedos .99, .5 and .1, `p_f = .75`, an optical length of 2.
-const ROD_MIS: On<Walker> = on("rod/spectral-three-albedos", 1, Walker::Mis);
+const ROD_MIS: On<MutantWalker> = on("rod/spectral-three-albedos", 1, MutantWalker::Mis);
 /// A thin rod of albedos .6, .5 and .4, spectral tracking by the mean albedo.
-const ROD_TRACKING: On<Walker> = on("rod/spectral-near-albedos", 1, Walker::Tracking);
+const ROD_TRACKING: On<MutantWalker> = on("rod/spectral-near-albedos", 1, MutantWalker::Tracking);
 /// A slab of albedos .9, .5 and .2, σ̂ above σ_t.
-const SLAB_MIS: On<Walker> = on("slab/spectral-known-bugs", 3, Walker::Mis);
+const SLAB_MIS: On<MutantWalker> = on("slab/spectral-known-bugs", 3, MutantWalker::Mis);
 /// Spectral tracking by the mean albedo.
-const SLAB_TRACKING: On<Walker> = on("slab/spectral-known-bugs", 1, Walker::Tracking);
+const SLAB_TRACKING: On<MutantWalker> = on("slab/spectral-known-bugs", 1, MutantWalker::Tracking);
 
 #[derive(Clone, Copy, PartialEq)]
 enum Bug {
@@ -35,7 +35,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_ROD: &[Line<Walker, Bug>] = &[
+const IN_ROD: &[MutantRow<MutantWalker, Bug>] = &[
     ("spectral-rod-dropped", "the last channel is missing from the denominator", ROD_MIS, CheckId::Mean, Bug::Dropped),
     ("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", ROD_MIS, CheckId::Mean, Bug::AlbedoTwice),
     ("spectral-rod-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", ROD_MIS, CheckId::Mean, Bug::Anew),
@@ -44,7 +44,7 @@ const IN_ROD: &[Line<Walker, Bug>] = &[
 ];
 
 #[rustfmt::skip] // one mutant, one entry
-const IN_SLAB: &[Line<Walker, Bug>] = &[
+const IN_SLAB: &[MutantRow<MutantWalker, Bug>] = &[
     ("spectral-slab-dropped", "the last channel is missing from the denominator", SLAB_MIS, CheckId::Mean, Bug::Dropped),
     ("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SLAB_MIS, CheckId::Mean, Bug::Anew),
     ("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SLAB_TRACKING, CheckId::Mean, Bug::ChanceKept),
@@ -61,9 +61,9 @@ pub fn in_slab() -> Vec<Mutant<SpectralSlab>> {
     mutants(IN_SLAB)
 }
 
-fn mutants<P: Coloured>(lines: &[Line<Walker, Bug>]) -> Vec<Mutant<P>> {
+fn mutants<P: Coloured>(lines: &[MutantRow<MutantWalker, Bug>]) -> Vec<Mutant<P>> {
     family(lines, &Bug::None, |&walker, &bug| {
-        let wrong = Wrong { bug, tracks: walker == Walker::Tracking };
+        let wrong = Wrong { bug, tracks: walker == MutantWalker::Tracking };
         one_by_one(move |setup, medium, random| draw(&wrong, setup, medium, random))
     })
 }

@@ -4,7 +4,7 @@
 //! X_λ = q_λ/Σ_h w_h q_h · p_λ(cos θ) Φ/(4π r²) T̂_λ
 //! ```
 
-use super::{Line, Mutant, On, family, on, one_by_one};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::setup::heroes::Heroes;
 use estimators::setup::walker::Walker;
 use estimators::spectral_single_scattering::Shadow;
@@ -46,7 +46,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Make, Bug>] = &[
+const LINES: &[MutantRow<Make, Bug>] = &[
     ("spectral-single-nulls-left-out", "null collisions before the scattering are left out of all densities", EXACT, CheckId::Mean, Bug::NullsLeftOut),
     ("spectral-single-albedo-missing", "the densities lack the albedo", EXACT, CheckId::Mean, Bug::AlbedoMissing),
     ("spectral-single-dropped", "the last channel is missing from the denominator", EXACT, CheckId::Mean, Bug::Dropped),

@@ -5,9 +5,9 @@
 //! combined          X = Σ f/p w,   w = p/Σ p,   p = 1, 1/(q Π ν), 4 d²/(a ρ² Π ν) of a hit, a shadow ray, a connection
 //! ```
 
-use super::{Line, Mutant, On, family, on, one_by_one};
-use estimators::space::shadow::Light;
-use estimators::space::{Particle, Splitting};
+use super::{Mutant, MutantRow, On, family, on, one_by_one};
+use estimators::space::shadow::VisibleLight;
+use estimators::space::{ParticleSettings, Splitting};
 use estimators::sphere::sharing::{Link, SharedTechniques, Subpaths, WalkEvents};
 use estimators::sphere::{Correct, Method};
 use gate::CheckId;
@@ -55,7 +55,7 @@ const fn page(
     shadow: Option<Tracking>,
     subpaths: Option<Subpaths>,
 ) -> Method {
-    let particle = Particle { rule, roulette: None, splitting: Splitting::None };
+    let particle = ParticleSettings { rule, roulette: None, splitting: Splitting::None };
     Method { particle, sharing: SharedTechniques { techniques, shadow, subpaths } }
 }
 
@@ -92,7 +92,7 @@ enum Bug {
 }
 
 #[rustfmt::skip] // one mutant, one entry
-const LINES: &[Line<Method, Bug>] = &[
+const LINES: &[MutantRow<Method, Bug>] = &[
     ("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", NEXT_EVENT_EXACT, CheckId::Mean, Bug::Through),
     ("sphere-light-twice", "light that the walk meets counts beside the shadow rays", NEXT_EVENT_SKY, CheckId::Mean, Bug::Twice),
     ("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", NEXT_EVENT, CheckId::Mean, Bug::PerArea),
@@ -185,19 +185,24 @@ impl WalkEvents for Bug {
         if *self == Self::EvenEmission { number.one_minus() } else { Correct.cosine(number) }
     }
 
-    fn light<L: Lane>(&self, sphere: &Sphere, place: [L; 3], right: Light<L>) -> Light<L> {
+    fn light<L: Lane>(
+        &self,
+        sphere: &Sphere,
+        place: [L; 3],
+        right: VisibleLight<L>,
+    ) -> VisibleLight<L> {
         let one = right.share.each(1.0);
         match (self, sphere.light) {
-            (Self::Through, _) => Light { distance: one.each(f64::INFINITY), ..right },
-            (Self::PerArea, ball::Light::BlackSphere(core)) => {
+            (Self::Through, _) => VisibleLight { distance: one.each(f64::INFINITY), ..right },
+            (Self::PerArea, ball::BallLight::BlackSphere(core)) => {
                 // 2πρ²(1 − ρ/r)/4π, the visible area of the sphere.
                 let distance = sphere.centre.square_to(place, 1.0).root();
                 let share = (one - one.each(core) / distance) * (0.5 * core * core);
-                Light { share, ..right }
+                VisibleLight { share, ..right }
             }
             (Self::WithoutAlbedo, _) => {
                 let albedo = sphere.scene.albedo.even().unwrap_or(1.0);
-                Light { share: right.share / one.each(albedo), ..right }
+                VisibleLight { share: right.share / one.each(albedo), ..right }
             }
             _ => right,
         }

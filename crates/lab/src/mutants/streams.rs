@@ -7,12 +7,12 @@
 //! The mean stays right, and so does every single block: what is wrong is the spread of the blocks'
 //! means among each other, and so every standard error.
 
-use super::{About, Target, product};
+use super::{About, MutantTarget, product};
 use gate::CheckId;
 use numeric::rng::{Address, LANES, Streams};
 
 /// The experiment on which they are shown.
-pub const TARGET: Target = product::LINEAR.target;
+pub const TARGET: MutantTarget = product::LINEAR.target;
 
 /// A known bug in what leads from addresses to random numbers.
 #[derive(Debug, Clone, Copy)]

@@ -8,7 +8,7 @@ use crate::self_test::calibration::{Calibration, Rate};
 use crate::self_test::streams::{ALPHA, StreamVerdicts};
 use numeric::digits::{count, short};
 use trueflight::report::fields::{self, Shown, Table, grid, judged, shown, table};
-use trueflight::report::layout::{Field, Paint, Pen};
+use trueflight::report::layout::{LayoutField, Paint, Pen};
 use trueflight::report::lists::joined;
 use trueflight::report::{Artifact, ReportError};
 
@@ -87,8 +87,8 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     for (field, mutant) in grid.columns[3].fields.iter_mut().zip(mutants) {
         match mutant.draws {
             Some(_) if mutant.twin_passes => {}
-            Some(_) => *field = Field::judged(false, ["", "THE CONTROL FAILS"]),
-            None => *field = Field::judged(false, ["", "ESCAPES"]),
+            Some(_) => *field = LayoutField::judged(false, ["", "THE CONTROL FAILS"]),
+            None => *field = LayoutField::judged(false, ["", "ESCAPES"]),
         }
     }
     grid.fit(pen.width);

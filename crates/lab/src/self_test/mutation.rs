@@ -4,7 +4,7 @@
 //! bugs of an experiment are drawn in its place one after another, against the same prediction. A control that makes the
 //! same draws as the estimator, bit for bit, shares the estimator's verdict.
 
-use crate::mutants::{self, About, Caught, StreamMutant, Target, streams};
+use crate::mutants::{self, About, Caught, MutantTarget, StreamMutant, streams};
 use estimators::{DrawBuffer, Experiment, Refusal};
 use gate::CheckId;
 use gate::causes::Pattern;
@@ -14,10 +14,10 @@ use theory::parallel;
 use trueflight::case::{Case, CaseError, suite};
 use trueflight::draw::run;
 use trueflight::plan::options::{Amount, Options};
-use trueflight::plan::{Plan, Planned};
+use trueflight::plan::{Plan, PlannedExperiment};
 use trueflight::record::{Finding, Verdict, evaluate};
 
-pub use crate::mutants::Walk;
+pub use crate::mutants::MutantWalk;
 
 /// Draws and judges all mutants and their controls.
 ///
@@ -64,9 +64,9 @@ pub fn patterns(
 /// mutant of that name.
 pub fn experiment(
     about: &About,
-    walk: Walk,
+    walk: MutantWalk,
     case: &Case,
-    planned: &Planned,
+    planned: &PlannedExperiment,
     seed: u64,
 ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
     let pilots = case.pilots(seed, planned.estimator);
@@ -78,12 +78,12 @@ pub fn experiment(
 
 /// A known bug: in an estimator, or in the streams of its random numbers.
 #[derive(Clone, Copy)]
-enum Known {
+enum KnownBug {
     Estimator(About),
     Streams(&'static StreamMutant),
 }
 
-impl Known {
+impl KnownBug {
     fn about(&self) -> About {
         match *self {
             Self::Estimator(about) => about,
@@ -97,14 +97,14 @@ impl Known {
 fn on_stands<T: Send>(
     options: &Options,
     is_wanted: &dyn Fn(&str) -> bool,
-    draw: impl Fn(&mut Stand, &Known) -> T + Sync,
+    draw: impl Fn(&mut Stand, &KnownBug) -> T + Sync,
 ) -> Result<Vec<T>, CaseError> {
     let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
-    let of_estimators = mutants::all().into_iter().map(Known::Estimator);
-    let known = of_estimators.chain(streams::MUTANTS.iter().map(Known::Streams));
+    let of_estimators = mutants::all().into_iter().map(KnownBug::Estimator);
+    let known = of_estimators.chain(streams::MUTANTS.iter().map(KnownBug::Streams));
     let known = known.filter(|known| is_wanted(known.about().name));
     let mut plans: Vec<Plan> = Plan::new(&cases, options).singly().collect();
-    let mut groups: Vec<Group<T>> = Vec::new();
+    let mut groups: Vec<BugGroup<T>> = Vec::new();
     for numbered in known.enumerate() {
         let target = numbered.1.about().target;
         if let Some(group) = groups.iter_mut().find(|group| group.stand.target == target) {
@@ -113,9 +113,9 @@ fn on_stands<T: Send>(
         }
         let plan = plans.iter().position(|plan| is_at(plan, &target)).map(|at| plans.remove(at));
         let stand = Stand { target, plan, passes: None };
-        groups.push(Group { stand, bugs: vec![numbered], found: Vec::new() });
+        groups.push(BugGroup { stand, bugs: vec![numbered], found: Vec::new() });
     }
-    parallel::change(&mut groups, |Group { stand, bugs, found }| {
+    parallel::change(&mut groups, |BugGroup { stand, bugs, found }| {
         found.extend(bugs.iter().map(|(number, known)| (*number, draw(stand, known))));
     });
     let mut found: Vec<(usize, T)> = groups.into_iter().flat_map(|group| group.found).collect();
@@ -124,14 +124,14 @@ fn on_stands<T: Send>(
 }
 
 /// The bugs of one stand with their numbers, and their results.
-struct Group<'a, T> {
+struct BugGroup<'a, T> {
     stand: Stand<'a>,
-    bugs: Vec<(usize, Known)>,
+    bugs: Vec<(usize, KnownBug)>,
     found: Vec<(usize, T)>,
 }
 
 /// Returns whether a plan of one experiment is that of a target.
-fn is_at(plan: &Plan, target: &Target) -> bool {
+fn is_at(plan: &Plan, target: &MutantTarget) -> bool {
     plan.experiments().any(|(case, planned)| {
         case.case.name == target.case
             && planned.estimator == target.index
@@ -141,7 +141,7 @@ fn is_at(plan: &Plan, target: &Target) -> bool {
 
 /// An experiment of the suite, in the place of which known bugs are drawn.
 struct Stand<'a> {
-    target: Target,
+    target: MutantTarget,
     /// Its plan at the levels of the suite; `None` if the suite has no such experiment.
     plan: Option<Plan<'a>>,
     /// True if the correct estimator passes; `None` if it has not been drawn.
@@ -149,20 +149,24 @@ struct Stand<'a> {
 }
 
 impl<'a> Stand<'a> {
-    fn parts(&mut self) -> Option<(&'a Case, &mut Planned)> {
+    fn parts(&mut self) -> Option<(&'a Case, &mut PlannedExperiment)> {
         let case = self.plan.as_mut()?.cases.first_mut()?;
         Some((case.case, case.experiments.first_mut()?))
     }
 
     /// Draws and judges what the plan has at present.
-    fn judged(&mut self, until_failed: Option<CheckId>) -> Option<Judged> {
+    fn judged(&mut self, until_failed: Option<CheckId>) -> Option<JudgedExperiment> {
         let plan = self.plan.as_mut()?;
         plan.options.until_failed = until_failed;
         let draws = run::draw(plan, &|_| {});
         let judged = evaluate::run(plan, &draws).into_iter();
         let findings = judged.flat_map(|one| one.findings).collect();
         let planned = self.parts()?.1;
-        Some(Judged { estimator: planned.id.estimator.to_string(), fixed: planned.fixed, findings })
+        Some(JudgedExperiment {
+            estimator: planned.id.estimator.to_string(),
+            fixed: planned.fixed,
+            findings,
+        })
     }
 
     /// Returns whether the correct estimator passes.
@@ -177,31 +181,35 @@ impl<'a> Stand<'a> {
     }
 
     /// Makes a walk of a mutant of an estimator.
-    fn walk(&mut self, about: &About, walk: Walk) -> Option<Box<dyn Experiment>> {
+    fn walk(&mut self, about: &About, walk: MutantWalk) -> Option<Box<dyn Experiment>> {
         let seed = self.plan.as_ref()?.options.seed;
         let (case, planned) = self.parts()?;
         experiment(about, walk, case, planned, seed)?.ok()
     }
 
     /// Returns whether the control of a bug makes the estimator's own draws. Wrong streams are drawn by the estimator.
-    fn has_twin(&mut self, known: &Known) -> bool {
-        let Known::Estimator(about) = known else { return true };
-        let twin = self.walk(about, Walk::Control);
+    fn has_twin(&mut self, known: &KnownBug) -> bool {
+        let KnownBug::Estimator(about) = known else { return true };
+        let twin = self.walk(about, MutantWalk::Control);
         let parts = self.parts().zip(twin);
         parts.is_some_and(|((_, planned), twin)| same(planned, twin.as_ref()))
     }
 
     /// Judges the draws of a bug.
-    fn faulty(&mut self, known: &Known, until_failed: Option<CheckId>) -> Option<Judged> {
+    fn faulty(
+        &mut self,
+        known: &KnownBug,
+        until_failed: Option<CheckId>,
+    ) -> Option<JudgedExperiment> {
         match known {
-            Known::Estimator(about) => {
-                let faulty = self.walk(about, Walk::Faulty)?;
+            KnownBug::Estimator(about) => {
+                let faulty = self.walk(about, MutantWalk::Faulty)?;
                 let control = self.replace(faulty)?;
                 let judged = self.judged(until_failed);
                 self.replace(control)?;
                 judged
             }
-            Known::Streams(mutant) => {
+            KnownBug::Streams(mutant) => {
                 self.parts()?.1.find_streams = mutant.streams;
                 let judged = self.judged(until_failed);
                 self.parts()?.1.find_streams = Address::streams;
@@ -218,7 +226,7 @@ impl<'a> Stand<'a> {
 }
 
 /// Findings on one experiment.
-struct Judged {
+struct JudgedExperiment {
     /// The estimator's name.
     estimator: String,
     /// The number of draws for its distributions.
@@ -226,7 +234,7 @@ struct Judged {
     findings: Vec<Finding>,
 }
 
-impl Judged {
+impl JudgedExperiment {
     /// Returns which checks fail.
     fn pattern(&self) -> Pattern {
         let mut pattern = Pattern::default();
@@ -240,8 +248,8 @@ impl Judged {
 fn caught(
     [name, bug]: [&'static str; 2],
     check: CheckId,
-    target: &Target,
-    judged: Option<&Judged>,
+    target: &MutantTarget,
+    judged: Option<&JudgedExperiment>,
     twin_passes: bool,
 ) -> Caught {
     let failing: Vec<&Finding> = judged
@@ -267,7 +275,7 @@ fn caught(
 }
 
 /// Returns whether two experiments make the same draws, bit for bit, over a buffer.
-fn same(planned: &Planned, twin: &dyn Experiment) -> bool {
+fn same(planned: &PlannedExperiment, twin: &dyn Experiment) -> bool {
     let Ok(ready) = &planned.outcome else { return false };
     let fill = |experiment: &dyn Experiment| {
         let channels = ready.prediction.channels.len();

@@ -39,7 +39,7 @@ const MEAN_FACTORS: f64 = 1.5;
 
 /// Distribution of draws with known moments.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
+pub enum DrawDistribution {
     /// 1 with this probability, else 0.
     Bernoulli(f64),
     /// `e^{σz}`, z normal.
@@ -61,22 +61,22 @@ pub enum Law {
 }
 
 /// Every distribution.
-pub const LAWS: [Law; 15] = [
-    Law::Bernoulli(1e-2),
-    Law::Bernoulli(1e-3),
-    Law::Bernoulli(1e-4),
-    Law::Bernoulli(1e-5),
-    Law::Bernoulli(1e-6),
-    Law::LogNormal(1.0),
-    Law::LogNormal(2.0),
-    Law::LogNormal(3.0),
-    Law::Spike,
-    Law::NoisySpike,
-    Law::Narrow,
-    Law::Pareto(2.2),
-    Law::Pareto(4.5),
-    Law::Signed,
-    Law::Exponential,
+pub const LAWS: [DrawDistribution; 15] = [
+    DrawDistribution::Bernoulli(1e-2),
+    DrawDistribution::Bernoulli(1e-3),
+    DrawDistribution::Bernoulli(1e-4),
+    DrawDistribution::Bernoulli(1e-5),
+    DrawDistribution::Bernoulli(1e-6),
+    DrawDistribution::LogNormal(1.0),
+    DrawDistribution::LogNormal(2.0),
+    DrawDistribution::LogNormal(3.0),
+    DrawDistribution::Spike,
+    DrawDistribution::NoisySpike,
+    DrawDistribution::Narrow,
+    DrawDistribution::Pareto(2.2),
+    DrawDistribution::Pareto(4.5),
+    DrawDistribution::Signed,
+    DrawDistribution::Exponential,
 ];
 
 /// Quantities that are claimed of the draws.
@@ -106,7 +106,7 @@ impl std::fmt::Display for Claims {
     }
 }
 
-impl std::fmt::Display for Law {
+impl std::fmt::Display for DrawDistribution {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Bernoulli(p) => write!(f, "Bernoulli {p:e}"),
@@ -129,7 +129,7 @@ fn central([m1, m2, m3, m4]: [f64; 4]) -> (f64, f64) {
     (variance, fourth / (variance * variance))
 }
 
-impl Law {
+impl DrawDistribution {
     /// Mean, variance, kurtosis where it is finite, and range where there is one.
     fn moments(self) -> (f64, f64, Option<f64>, Option<[f64; 2]>) {
         let two_point = |p: f64| (1.0 - 3.0 * p * (1.0 - p)) / (p * (1.0 - p));
@@ -262,7 +262,7 @@ pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
     LAWS.iter().flat_map(|&law| of_law(law, streams, step)).collect()
 }
 
-fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
+fn of_law(law: DrawDistribution, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
     let wanted = Options { alpha: ALPHA, ..Options::default() };
     let trials: Vec<(Claims, CheckedClaim)> = CLAIMS
         .into_iter()

@@ -25,11 +25,11 @@ const DOUBLINGS: i32 = 10;
 const BOUND: f64 = 516.0 * f64::EPSILON / 2.0;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let mut rows = Vec::new();
     for law in [UNIFORM, NEAR_CONSTANT] {
         let row = |what: &str, measure, bound| {
-            Row::new(
+            TrialRow::new(
                 format!("{what} of {}", law.name),
                 format!("1e9 draws, {}", law.range),
                 measure,
@@ -51,12 +51,12 @@ pub fn rows(run: Run) -> Vec<Row> {
     }
     let range = "262144 draws, one of them 1e3 … 1e60";
     let huge = [
-        Row::relative("variance with one huge draw", range, BOUND),
-        Row::relative("kurtosis with one huge draw", range, 8.0 * BOUND),
+        TrialRow::relative("variance with one huge draw", range, BOUND),
+        TrialRow::relative("kurtosis with one huge draw", range, 8.0 * BOUND),
     ];
     rows.extend(run.fill([4, 64], huge, Huge::any, one_huge_draw));
     let range = "±x of 1e-12 … 1e12 and a rest of 1, any order";
-    let sum = Row::relative("compensated sum that cancels", range, 1e-15);
+    let sum = TrialRow::relative("compensated sum that cancels", range, 1e-15);
     rows.extend(run.fill([20, 400], [sum], Terms::any, cancelling));
     rows
 }
@@ -87,7 +87,7 @@ fn below(stream: &mut Stream, bound: usize) -> usize {
 
 /// Draws `offset + k·unit` with `0 ≤ k < 2^bits`.
 #[derive(Clone, Copy)]
-struct Law {
+struct OffsetDraws {
     name: &'static str,
     range: &'static str,
     bits: u32,
@@ -95,14 +95,14 @@ struct Law {
     offset: f64,
 }
 
-const UNIFORM: Law = Law {
+const UNIFORM: OffsetDraws = OffsetDraws {
     name: "uniform draws",
     range: "k·2⁻²⁴ in [0, 1)",
     bits: 24,
     unit: 1.0 / 16_777_216.0,
     offset: 0.0,
 };
-const NEAR_CONSTANT: Law = Law {
+const NEAR_CONSTANT: OffsetDraws = OffsetDraws {
     name: "draws of variance 4e-21 mean²",
     range: "1 + k·2⁻⁵², k < 2²⁰",
     bits: 20,
@@ -119,7 +119,7 @@ fn whole(k: i128) -> DoubleDouble {
 }
 
 /// Buffers of whole numbers, merged in a random tree, and then with themselves.
-fn whole_numbers(law: Law, seed: u64, seen: &mut Seen) -> Option<()> {
+fn whole_numbers(law: OffsetDraws, seed: u64, seen: &mut Seen) -> Option<()> {
     let (mut stream, centre) = (stream(seed), 1_i64 << (law.bits - 1));
     let shift = law.offset + centre as f64 * law.unit;
     let mut exact = [0_i128; 4];

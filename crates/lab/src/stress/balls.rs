@@ -15,7 +15,7 @@ use super::ordinates::{directions, roots, solved_pivoted};
 use super::prelude::*;
 use theory::space::sphere::ball::Ball;
 use theory::space::sphere::predict::BLURRED;
-use theory::space::sphere::shells::{Centre, Resolution};
+use theory::space::sphere::shells::{BallResolution, Centre};
 use theory::space::sphere::{Lights, Observable, answers};
 
 /// Directions of the ordinates.
@@ -26,17 +26,22 @@ const ASKED: usize = 32;
 const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "homogeneous, σ_t R = 1e-2 … 20; discrete ordinates, 32 digits";
     let of_even = ["mean intensity in a ball", "radiance of a ball"];
-    let of_even = of_even.map(|what| Row::stated(what, range));
+    let of_even = of_even.map(|what| TrialRow::stated(what, range));
     let mut rows = run.fill([1, 32], of_even, Asked::any, even);
     let range = "radial σ_t, black spheres 0.01 … 0.95 R, a = 1; J = 1";
-    let row = Row::stated("white ball in white light", range);
+    let row = TrialRow::stated("white ball in white light", range);
     rows.extend(run.fill([1, 16], [row], Scene::any, white));
     let range = "radial σ_t, black spheres 0.01 … 0.95 R, known to 1e-4; a finer solution";
     // One ball in ten is known too badly to be compared: three are enough for a row.
-    rows.extend(run.fill([3, 16], [Row::stated("ball of any albedo", range)], Scene::any, finer));
+    rows.extend(run.fill(
+        [3, 16],
+        [TrialRow::stated("ball of any albedo", range)],
+        Scene::any,
+        finer,
+    ));
     rows
 }
 
@@ -185,7 +190,7 @@ fn even(asked: &Asked, seen: &mut Seen) -> Option<()> {
     let asked: Vec<Observable> = places.chain(asked.offsets.map(ray)).collect();
     let extinction = move |_: f64| depth;
     let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
-    let found = answers(&ball, albedo, SKY, Resolution::COARSE, &asked);
+    let found = answers(&ball, albedo, SKY, BallResolution::COARSE, &asked);
     // At a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
     let near =
         if albedo == 1.0 { 1.0 - DoubleDouble::from(1e-20) } else { DoubleDouble::from(albedo) };
@@ -207,7 +212,7 @@ fn white(scene: &Scene, seen: &mut Seen) -> Option<()> {
     let (asked, extinction) = (scene.asked(), |r2| scene.field.extinction(r2));
     let ball = Ball { radius: 1.0, centre: scene.centre(), extinction: &extinction };
     let lights = Lights { environment: 1.0, core: 1.0 };
-    let found = answers(&ball, 1.0, lights, Resolution::COARSE, &asked);
+    let found = answers(&ball, 1.0, lights, BallResolution::COARSE, &asked);
     for (asked, found) in asked.iter().zip(seen.found(0, found)?) {
         seen.at(format_args!("{asked:?}"));
         seen.stated(0, found, DoubleDouble::ONE);
@@ -216,8 +221,8 @@ fn white(scene: &Scene, seen: &mut Seen) -> Option<()> {
 }
 
 /// Nodes, directions and grading of which the answers are good to a small part of what is stated.
-pub const FINER: Resolution =
-    Resolution { nodes: 9, directions: 9, surface: 11, core: 14, chance: 1e-10 };
+pub const FINER: BallResolution =
+    BallResolution { nodes: 9, directions: 9, surface: 11, core: 14, chance: 1e-10 };
 
 /// Other albedos and lights, by a finer solution.
 fn finer(scene: &Scene, seen: &mut Seen) -> Option<()> {
@@ -226,7 +231,7 @@ fn finer(scene: &Scene, seen: &mut Seen) -> Option<()> {
     let lights = if is_dark { Lights { environment: 0.0, core: 1.0 } } else { SKY };
     let ball = Ball { radius: 1.0, centre: scene.centre(), extinction: &extinction };
     let of = |resolution| answers(&ball, scene.albedo, lights, resolution, &asked);
-    let (found, fine) = seen.found(0, of(Resolution::COARSE).zip(of(FINER)))?;
+    let (found, fine) = seen.found(0, of(BallResolution::COARSE).zip(of(FINER)))?;
     for ((asked, found), fine) in asked.iter().zip(found).zip(fine) {
         seen.at(format_args!("{asked:?}"));
         // Nobody draws against an answer that is known no better.

@@ -8,19 +8,19 @@
 //! ```
 
 use super::equations::{binomial, power};
-use super::nodes::{Line, Solution};
+use super::nodes::{PanelLine, Solution};
 use super::prelude::*;
 
 use super::depths::knots;
 use super::fields;
 use estimators::transmittance::next_flight::NextFlight;
 use estimators::transmittance::unidirectional_mis::UnidirectionalMis;
-use theory::ray::volterra::{self, Source};
+use theory::ray::volterra::{self, ScoreMoments};
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";
-    run.fill([16, 640], Row::moments("next-flight and MIS", range), Layers::any, trial)
+    run.fill([16, 640], TrialRow::moments("next-flight and MIS", range), Layers::any, trial)
 }
 
 parameters! {
@@ -37,7 +37,7 @@ fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) {
     let sampling = collisions / breaks[widths.len()];
     let values: Vec<f64> = ratios.iter().map(|ratio| sampling * ratio).collect();
     let mesh = Mesh::new(fields::pieces(&breaks, &values));
-    let sources: [(&str, &dyn Source, bool); 2] =
+    let sources: [(&str, &dyn ScoreMoments, bool); 2] =
         [("next-flight", &NextFlight, false), ("unidirectional-mis", &UnidirectionalMis, true)];
     for (name, source, is_shared) in sources {
         seen.at(name);
@@ -50,7 +50,7 @@ fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) {
 fn raw(breaks: &[f64], values: &[f64], sampling: f64, is_shared: bool) -> [DoubleDouble; 4] {
     let ends: Vec<DoubleDouble> = breaks.iter().copied().map(DoubleDouble::from).collect();
     // Twice the rate: 1/(1 + v) has a pole at v = −1.
-    let line = Line::new(&ends, |_| 2.0 * sampling);
+    let line = PanelLine::new(&ends, |_| 2.0 * sampling);
     let to_end = |x: DoubleDouble| (-(sampling * (ends[ends.len() - 1] - x))).exp();
     let at =
         line.values(|layer, x| (to_end(x), 1.0 - DoubleDouble::from(values[layer]) / sampling));

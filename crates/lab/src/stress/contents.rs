@@ -31,8 +31,8 @@ const FEW_CHORDS: f64 = 4e3;
 const NODES: usize = 64;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
-    let row = Row::stated("∫σ_t dV, smooth", "smooth fields of five kinds, balls and boxes");
+pub fn rows(run: Run) -> Vec<TrialRow> {
+    let row = TrialRow::stated("∫σ_t dV, smooth", "smooth fields of five kinds, balls and boxes");
     let mut rows = run.fill([32, 1024], [row], smooth, |&(body, size, filling), seen| {
         let volume = filling.volume(body, size);
         see(&*volume, DoubleDouble::from(body.integral(&*volume)), content::MAX_CHORDS, seen)
@@ -41,10 +41,11 @@ pub fn rows(run: Run) -> Vec<Row> {
         ([32, 1024], FEW_CHORDS, "layers at any angle, 4e3 chords"),
         ([1, 16], content::MAX_CHORDS, "layers at any angle, 3e5 chords"),
     ] {
-        let row = Row::stated("∫σ_t dV, layers", range);
+        let row = TrialRow::stated("∫σ_t dV, layers", range);
         rows.extend(run.fill(trials, [row], Stack::any, |stack, seen| layers(stack, chords, seen)));
     }
-    let row = Row::stated("∫σ_t dV, cells", "grids and noise over boxes, 4e3 chords; by cells");
+    let row =
+        TrialRow::stated("∫σ_t dV, cells", "grids and noise over boxes, 4e3 chords; by cells");
     rows.extend(run.fill([32, 1024], [row], cells, |cells, seen| {
         let (volume, planes) = cells.of();
         let rule = GaussLegendre::new(4);
@@ -84,27 +85,27 @@ fn product(volume: &Volume, [xs, ys, zs]: &[Vec<(f64, f64)>; 3]) -> f64 {
 
 /// A ball or a box.
 #[derive(Debug, Clone, Copy)]
-enum Body {
+enum Shape {
     Ball([f64; 3], f64),
     Box([f64; 3], [f64; 3]),
 }
 
-fn ball() -> impl Strategy<Value = Body> {
+fn ball() -> impl Strategy<Value = Shape> {
     (sized(-3.0, 3.0), sized(-1.0, 1.0), [between(-1.0, 1.0); 3])
-        .prop_map(|(radius, away, centre)| Body::Ball(centre.map(|x| away * radius * x), radius))
+        .prop_map(|(radius, away, centre)| Shape::Ball(centre.map(|x| away * radius * x), radius))
 }
 
-fn body() -> impl Strategy<Value = Body> {
+fn body() -> impl Strategy<Value = Shape> {
     let cuboid = (sized(-3.0, 3.0), [between(-3.0, 3.0); 3], [between(0.1, 1.0); 3]).prop_map(
         |(size, low, edges)| {
             let low = low.map(|x| size * x);
-            Body::Box(low, [0, 1, 2].map(|i| low[i] + size * edges[i]))
+            Shape::Box(low, [0, 1, 2].map(|i| low[i] + size * edges[i]))
         },
     );
     prop_oneof![ball(), cuboid]
 }
 
-impl Body {
+impl Shape {
     fn bounds(self) -> Bounds {
         match self {
             Self::Ball(centre, radius) => Bounds::Sphere { centre: Point(centre), radius },
@@ -207,7 +208,7 @@ enum Filling {
     Radial([f64; 3]),
 }
 
-fn smooth() -> impl Strategy<Value = (Body, f64, Filling)> {
+fn smooth() -> impl Strategy<Value = (Shape, f64, Filling)> {
     let anywhere = [between(-1.0, 1.0); 3];
     let exponential = (sign(), sized(-6.0, 1.5), anywhere)
         .prop_map(|(sign, rate, axis)| Filling::Exponential(sign * rate, axis));
@@ -225,7 +226,7 @@ fn smooth() -> impl Strategy<Value = (Body, f64, Filling)> {
 }
 
 impl Filling {
-    fn volume(self, body: Body, size: f64) -> Arc<Volume> {
+    fn volume(self, body: Shape, size: f64) -> Arc<Volume> {
         let (bounds, centre, unit) = (body.bounds(), body.centre(), body.reach());
         match self {
             Self::Constant => Arc::new(Constant::within(size, bounds)),
@@ -254,7 +255,7 @@ impl Filling {
 parameters! {
     /// Layers that jump, or bend, at heights along, across and askew of the chords.
     Stack {
-        body: Body = body(),
+        body: Shape = body(),
         axis: [f64; 3] = prop_oneof![
             Just([1.0, 0.0, 0.0]),
             between(0.05, 1.5).prop_map(|tilt| [tilt.sin(), 0.1 * tilt.sin(), tilt.cos()]),
@@ -302,11 +303,11 @@ struct Cells {
     low: [f64; 3],
     edges: [f64; 3],
     seed: u32,
-    kind: Kind,
+    kind: ShapeKind,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+enum ShapeKind {
     Grid([usize; 3], Interpolation, Placement),
     /// Octaves and frequency.
     Noise(u32, f64),
@@ -316,8 +317,8 @@ fn cells() -> impl Strategy<Value = Cells> {
     let interpolation = any_of(&[Interpolation::Nearest, Interpolation::Trilinear]);
     let placement = any_of(&[Placement::Vertices, Placement::CentresClamped]);
     let size = [2..5_usize, 2..5_usize, 2..5_usize];
-    let grid = (size, interpolation, placement).prop_map(|(n, i, p)| Kind::Grid(n, i, p));
-    let noise = (1..=2_u32, sized(-0.5, 0.3)).prop_map(|(octaves, f)| Kind::Noise(octaves, f));
+    let grid = (size, interpolation, placement).prop_map(|(n, i, p)| ShapeKind::Grid(n, i, p));
+    let noise = (1..=2_u32, sized(-0.5, 0.3)).prop_map(|(octaves, f)| ShapeKind::Noise(octaves, f));
     let kind = prop_oneof![(grid, [between(0.2, 3.0); 3]), (noise, [between(0.2, 1.5); 3])];
     ([between(-2.0, 2.0); 3], 0..1000_u32, kind).prop_map(|(low, seed, (kind, edges))| Cells {
         low,
@@ -334,7 +335,7 @@ impl Cells {
         let high = [0, 1, 2].map(|i| low[i] + edges[i]);
         let cuboid = Aabb { low: Point(low), high: Point(high) };
         match kind {
-            Kind::Grid(size, interpolation, placement) => {
+            ShapeKind::Grid(size, interpolation, placement) => {
                 // All that samples of either kind, or their neighbourhoods, may begin and end at.
                 let planes = [0, 1, 2].map(|i| {
                     let halves = 2 * (size[i] - usize::from(placement == Placement::Vertices));
@@ -343,7 +344,7 @@ impl Cells {
                 });
                 (Arc::new(Grid::random(size, seed, cuboid, interpolation, placement)), planes)
             }
-            Kind::Noise(octaves, frequency) => {
+            ShapeKind::Noise(octaves, frequency) => {
                 let width = 2.0 / f64::from(1_u32 << octaves) / frequency;
                 let planes = [0, 1, 2].map(|i| {
                     let first = (low[i] / width).ceil();

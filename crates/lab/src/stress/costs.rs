@@ -17,14 +17,15 @@ use theory::ray::free_flight;
 use theory::ray::product::Product;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
-    let row = Row::stated("mean free flight", "1 … 5 layers, each τ = 1e-9 … 100 or empty");
+pub fn rows(run: Run) -> Vec<TrialRow> {
+    let row = TrialRow::stated("mean free flight", "1 … 5 layers, each τ = 1e-9 … 100 or empty");
     let mut rows = run.fill([32, 1200], [row], Layers::any, flights);
-    let row = Row::stated("lookups of product estimators", "0.001 … 1000 collisions, r = 1e-9 … 2");
+    let row =
+        TrialRow::stated("lookups of product estimators", "0.001 … 1000 collisions, r = 1e-9 … 2");
     rows.extend(run.fill([64, 2400], [row], Terminating::any, collisions));
     let range = "5 distances, ratio tracking, r = 1e-3 … 3, τ = 1e-6 … 30";
     let of_curves = ["transmittance", "variance", "variance of steps"]
-        .map(|what| Row::stated(format!("{what} along a curve"), range));
+        .map(|what| TrialRow::stated(format!("{what} along a curve"), range));
     rows.extend(run.fill([32, 1200], of_curves, Curve::any, curves));
     rows
 }

@@ -1,25 +1,25 @@
 //! Optical depths of every field, thick and thin, long and short, against closed forms in 32 digits,
 //! and those of 3-D fields without one against quadrature of their lookups.
 
-use super::fields::{Field, Line, Space, crossed};
+use super::fields::{FieldLine, LineField, Space, crossed};
 use super::prelude::*;
 use media::voxels::Interpolation::{Nearest, Trilinear};
 use numeric::geometry::{Point, Ray};
 use numeric::sum::Sum;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let fields = FIELDS.into_iter().enumerate().flat_map(|(kind, (name, range))| {
         let name = format!("optical depth, {name}");
-        let rows = [Row::stated(&name, range), Row::relative(&name, range, 1e-9)];
+        let rows = [TrialRow::stated(&name, range), TrialRow::relative(&name, range, 1e-9)];
         run.fill([320, 9600], rows, || line(kind), closed)
     });
-    let mut rows: Vec<Row> = fields.collect();
+    let mut rows: Vec<TrialRow> = fields.collect();
     let range = "cuts at breaks, too; stated errors and 1e-13";
-    let sums = Row::stated("optical depth, sum over splits", range);
+    let sums = TrialRow::stated("optical depth, sum over splits", range);
     rows.extend(run.fill([320, 9600], [sums], Cut::any, splits));
     let range = "Eq. 21, noise, grids; from 0 … 1e4 away; stated and 1e-13";
-    let lookups = Row::stated("optical depth in 3-D, quadrature", range);
+    let lookups = TrialRow::stated("optical depth in 3-D, quadrature", range);
     rows.extend(run.fill([64, 1100], [lookups], Crossing::any, quadrature));
     rows
 }
@@ -34,7 +34,7 @@ const FIELDS: [(&str, &str); 6] = [
 ];
 
 /// A field of one of the kinds.
-pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
+pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<FieldLine> {
     let knotted = |more: usize| {
         let values = (1..=30_usize).prop_flat_map(move |count| {
             let value =
@@ -44,9 +44,9 @@ pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
         values.prop_map(move |(from, widths, values)| {
             let knots = knots(from, &widths);
             let to = knots[widths.len()];
-            let steps = |breaks, values| Field::Steps { breaks, values };
-            let lines = |knots, values| Field::Lines { knots, values };
-            Line {
+            let steps = |breaks, values| LineField::Steps { breaks, values };
+            let lines = |knots, values| LineField::Lines { knots, values };
+            FieldLine {
                 field: if more == 0 { steps(knots, values) } else { lines(knots, values) },
                 from,
                 to,
@@ -57,7 +57,7 @@ pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
         0 => (sized(-12.0, 6.0), sized(-9.0, 9.0), begin())
             .prop_map(|(extinction, length, begin)| {
                 let from = begin * length;
-                Line { field: Field::Constant { extinction }, from, to: from + length }
+                FieldLine { field: LineField::Constant { extinction }, from, to: from + length }
             })
             .sboxed(),
         1 => knotted(0).sboxed(),
@@ -65,7 +65,11 @@ pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
         3 => (sized(-9.0, 6.0), sized(-6.0, 6.0), sign(), sized(-12.0, 2.7), between(-0.1, 0.1))
             .prop_map(|(extinction, length, sign, rate, begin)| {
                 let (rate, from) = (sign * rate / length, begin * length);
-                Line { field: Field::Exponential { extinction, rate }, from, to: from + length }
+                FieldLine {
+                    field: LineField::Exponential { extinction, rate },
+                    from,
+                    to: from + length,
+                }
             })
             .sboxed(),
         4 => (
@@ -79,8 +83,8 @@ pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
             .prop_map(|(peak, width, sign, centre, begin, length)| {
                 let centre = sign * centre;
                 let from = centre + begin * width;
-                Line {
-                    field: Field::Gaussian { peak, centre, width },
+                FieldLine {
+                    field: LineField::Gaussian { peak, centre, width },
                     from,
                     to: from + length * width,
                 }
@@ -90,7 +94,7 @@ pub(super) fn line(kind: usize) -> proptest::strategy::SBoxedStrategy<Line> {
             .prop_map(|(base, length, begin, waves)| {
                 let from = begin * length;
                 let waves = waves.map(|[a, f, phase]| [a * base, f / length, phase]).to_vec();
-                Line { field: Field::Sines { base, waves }, from, to: from + length }
+                FieldLine { field: LineField::Sines { base, waves }, from, to: from + length }
             })
             .sboxed(),
     }
@@ -116,7 +120,7 @@ pub(super) fn knots(from: f64, widths: &[f64]) -> Vec<f64> {
     knots
 }
 
-fn closed(line: &Line, seen: &mut Seen) -> Option<()> {
+fn closed(line: &FieldLine, seen: &mut Seen) -> Option<()> {
     let (exact, medium) = (line.depth(), line.medium());
     let depth = medium.optical_depth(medium.span());
     if exact.high.abs() < 1e-290 {
@@ -130,7 +134,7 @@ fn closed(line: &Line, seen: &mut Seen) -> Option<()> {
 parameters! {
     /// A field, and where it is cut: at places and at some of its breaks.
     Cut {
-        line: Line = (0..6_usize).prop_flat_map(line),
+        line: FieldLine = (0..6_usize).prop_flat_map(line),
         places: Vec<f64> = vec(between(0.0, 1.0), 1..=4),
         breaks: Vec<f64> = vec(between(0.0, 1.0), 1..=4),
     }

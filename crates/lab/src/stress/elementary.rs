@@ -16,13 +16,13 @@ parameters! {
 }
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let rows = [
-        Row::relative("ln", "1e-307 … 1e308", 5e-16),
-        Row::relative("ln next to 1", "1 ± k·2⁻⁵³, k = 1 … 2⁵²", 5e-16),
-        Row::relative("exp", "−708 … 709", 4e-16),
-        Row::new("sine and cosine", "|x| ≤ 1e5", Measure::Absolute, 5e-16),
-        Row::stated("sine and cosine, far", "1e5 ≤ |x| ≤ 1e9, 5e-16 and 2⁻⁸⁶|x|"),
+        TrialRow::relative("ln", "1e-307 … 1e308", 5e-16),
+        TrialRow::relative("ln next to 1", "1 ± k·2⁻⁵³, k = 1 … 2⁵²", 5e-16),
+        TrialRow::relative("exp", "−708 … 709", 4e-16),
+        TrialRow::new("sine and cosine", "|x| ≤ 1e5", Measure::Absolute, 5e-16),
+        TrialRow::stated("sine and cosine, far", "1e5 ≤ |x| ≤ 1e9, 5e-16 and 2⁻⁸⁶|x|"),
     ];
     run.fill([3200, 128_000], rows, Arguments::any, |arguments, seen| {
         let Arguments { ln, ulps_from_one, exp, sign, angle, far_angle } = *arguments;

@@ -19,15 +19,15 @@ use numeric::geometry::{Aabb, Bounds, Point, Ray};
 
 /// A field on a stretch of a line.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
-    pub field: Field,
+pub(super) struct FieldLine {
+    pub field: LineField,
     pub from: f64,
     pub to: f64,
 }
 
 /// A field along a line.
 #[derive(Debug, Clone)]
-pub(super) enum Field {
+pub(super) enum LineField {
     Constant {
         extinction: f64,
     },
@@ -55,19 +55,19 @@ pub(super) enum Field {
     },
 }
 
-impl Line {
+impl FieldLine {
     pub fn medium(&self) -> Medium {
         let profile: Arc<Profile> = match &self.field {
-            &Field::Constant { extinction } => Arc::new(Constant { extinction }),
-            Field::Steps { breaks, values } => Arc::new(Piecewise::steps(breaks, values)),
-            Field::Lines { knots, values } => Arc::new(Piecewise::lines(knots, values)),
-            &Field::Exponential { extinction, rate } => {
+            &LineField::Constant { extinction } => Arc::new(Constant { extinction }),
+            LineField::Steps { breaks, values } => Arc::new(Piecewise::steps(breaks, values)),
+            LineField::Lines { knots, values } => Arc::new(Piecewise::lines(knots, values)),
+            &LineField::Exponential { extinction, rate } => {
                 Arc::new(Exponential::new(extinction, rate))
             }
-            &Field::Gaussian { peak, centre, width } => {
+            &LineField::Gaussian { peak, centre, width } => {
                 Arc::new(Gaussian::new(peak, centre, width))
             }
-            Field::Sines { base, waves } => {
+            LineField::Sines { base, waves } => {
                 let wave = |&[amplitude, frequency, phase]: &[f64; 3]| Wave {
                     amplitude,
                     frequency,
@@ -88,23 +88,23 @@ impl Line {
             knots.windows(2).map(|pair| DoubleDouble::from(pair[1]) - pair[0]).collect()
         };
         match &self.field {
-            &Field::Constant { extinction } => length * extinction,
-            Field::Steps { breaks, values } => {
+            &LineField::Constant { extinction } => length * extinction,
+            LineField::Steps { breaks, values } => {
                 widths(breaks).into_iter().zip(values).map(|(width, &value)| width * value).sum()
             }
-            Field::Lines { knots, values } => {
+            LineField::Lines { knots, values } => {
                 let mean = |pair: &[f64]| (DoubleDouble::from(pair[0]) + pair[1]).scaled(-1);
                 widths(knots).into_iter().zip(values.windows(2)).map(|(w, p)| w * mean(p)).sum()
             }
-            &Field::Exponential { extinction, rate } => {
+            &LineField::Exponential { extinction, rate } => {
                 let slope = DoubleDouble::from(rate);
                 -(-(slope * length)).exp_m1() / slope * ((-(slope * from)).exp() * extinction)
             }
-            &Field::Gaussian { peak, centre, width } => {
+            &LineField::Gaussian { peak, centre, width } => {
                 let [a, b] = [from, to].map(|s| (s - centre) / width);
                 normal_between(a, b) * DoubleDouble::PI.scaled(1).sqrt() * width * peak
             }
-            Field::Sines { base, waves } => {
+            LineField::Sines { base, waves } => {
                 let wave = |&[amplitude, frequency, phase]: &[f64; 3]| {
                     let [a, b] = [self.from, self.to].map(|s| {
                         let [_, cosine] = (DoubleDouble::product(frequency, s) + phase).sin_cos();
@@ -120,7 +120,7 @@ impl Line {
 
 /// A homogeneous medium from 0 on.
 pub(super) fn homogeneous(extinction: f64, length: f64) -> Medium {
-    Line { field: Field::Constant { extinction }, from: 0.0, to: length }.medium()
+    FieldLine { field: LineField::Constant { extinction }, from: 0.0, to: length }.medium()
 }
 
 /// Layers, or straight lines between knots if there is a value more.
@@ -128,9 +128,9 @@ pub(super) fn pieces(knots: &[f64], values: &[f64]) -> Medium {
     let [from, to] = [knots[0], knots[knots.len() - 1]];
     let (knots, values) = (knots.to_vec(), values.to_vec());
     let is_steps = values.len() < knots.len();
-    let steps = |breaks| Field::Steps { breaks, values: values.clone() };
-    let field = if is_steps { steps(knots) } else { Field::Lines { knots, values } };
-    Line { field, from, to }.medium()
+    let steps = |breaks| LineField::Steps { breaks, values: values.clone() };
+    let field = if is_steps { steps(knots) } else { LineField::Lines { knots, values } };
+    FieldLine { field, from, to }.medium()
 }
 
 /// A field in space that rays cross.

@@ -1,19 +1,23 @@
 //! Free flights: the distance at which an optical depth is reached.
 
 use super::depths::{knots, line};
-use super::fields::Line;
+use super::fields::FieldLine;
 use super::prelude::*;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let trials = [480, 48_000];
     let range = "all 1-D fields, 1e-12 of the whole and the grain of s";
-    let mut rows =
-        run.fill(trials, [Row::stated("inverse of optical depth", range)], Flight::any, inverse);
+    let mut rows = run.fill(
+        trials,
+        [TrialRow::stated("inverse of optical depth", range)],
+        Flight::any,
+        inverse,
+    );
     let range = "1 … 12 pieces of 1e-9 … 1e6; 1e-12 and the grain of s";
-    let row = Row::stated("flight through pieces", range);
+    let row = TrialRow::stated("flight through pieces", range);
     rows.extend(run.fill(trials, [row], Pieces::any, pieces));
-    let row = Row::wrong("flights that end in gaps", "gaps of 1e-9 … 1e9 between pieces");
+    let row = TrialRow::wrong("flights that end in gaps", "gaps of 1e-9 … 1e9 between pieces");
     rows.extend(run.fill(trials, [row], Gap::any, empty));
     rows
 }
@@ -21,7 +25,7 @@ pub fn rows(run: Run) -> Vec<Row> {
 parameters! {
     /// A field, and the share of its depth that is flown.
     Flight {
-        line: Line = (0..6_usize).prop_flat_map(line),
+        line: FieldLine = (0..6_usize).prop_flat_map(line),
         share: f64 = sized(-12.0, 0.0),
     }
     /// Straight pieces.

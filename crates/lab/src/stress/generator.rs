@@ -9,18 +9,18 @@ use numeric::rng::{Stream, exponential, unit};
 const GRAIN: f64 = f64::EPSILON / 2.0;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "words 0, 2¹¹, 2⁶³, 2⁶⁴ − 1 and neighbours";
-    let ends = Row::wrong("uniforms outside their range", range);
+    let ends = TrialRow::wrong("uniforms outside their range", range);
     let word = || {
         (any_of(&[0, 1 << 11, 1 << 63, u64::MAX]), 0..3_u64)
             .prop_map(|(near, step)| near.wrapping_add(step).wrapping_sub(1))
     };
     let mut rows = run.fill([64, 64], [ends], word, edges);
     let range = "τ = 1e-18 … 36, all 2⁵³ numbers";
-    let chance = Row::new("probability of a collision", range, Measure::Absolute, 3.0 * GRAIN);
+    let chance = TrialRow::new("probability of a collision", range, Measure::Absolute, 3.0 * GRAIN);
     rows.extend(run.fill([400, 4000], [chance], || sized(-18.0, 1.55), collisions));
-    let distance = Row::relative("distance of a flight", "σ̂ = 1e-9 … 1e9", 1e-15);
+    let distance = TrialRow::relative("distance of a flight", "σ̂ = 1e-9 … 1e9", 1e-15);
     rows.extend(run.fill([950, 38_000], [distance], Flight::any, distances));
     rows
 }

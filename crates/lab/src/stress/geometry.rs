@@ -9,7 +9,7 @@ use numeric::double_double::{two_prod, two_sum};
 use numeric::geometry::{Aabb, Bounds, Point, Ray};
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let trials = [640, 80_000];
     let mut rows = Vec::new();
     for (range, away, depth) in [
@@ -17,22 +17,22 @@ pub fn rows(run: Run) -> Vec<Row> {
         ("origins up to 1e6 radii away", [1.0, 6.0], [-3.0, 0.0]),
         ("grazing within 1e-12 … 1e-2 of R", [-3.0, 6.0], [-12.0, -2.0]),
     ] {
-        let row = Row::stated("ends of a chord", range);
+        let row = TrialRow::stated("ends of a chord", range);
         let [away, depth] = [away, depth].map(|[low, high]| sized(low, high));
         rows.extend(run.fill(trials, [row], || (depth, Scene::any(away)), sphere));
     }
     let range = "passing at R(1 ± 1e-12 … 1e-2), up to 1e6 R away";
-    let row = Row::wrong("hits and misses, wrong", range);
+    let row = TrialRow::wrong("hits and misses, wrong", range);
     let depth = sized(-12.0, -2.0);
     rows.extend(run.fill(trials, [row], || (sign(), depth, Scene::any(sized(-1.0, 6.0))), miss));
     let range = "grazing within 1e-12 … 1 of R, up to 1e6 R away";
-    let row = Row::stated("optical depth of a chord", range);
+    let row = TrialRow::stated("optical depth of a chord", range);
     let chord = || (sized(-12.0, 0.0), Scene::any(sized(0.5, 6.0)));
     rows.extend(run.fill(trials.map(|count| count / 10), [row], chord, optical_depth));
     let range = "origins up to 1e6 sizes away, slopes 1e-12 … 1";
     rows.extend(run.fill(
         trials,
-        [Row::stated("ends of a chord, box", range)],
+        [TrialRow::stated("ends of a chord, box", range)],
         Cuboid::any,
         cuboid,
     ));
@@ -41,7 +41,7 @@ pub fn rows(run: Run) -> Vec<Row> {
 
 parameters! {
     /// A ball and a ray past it; the depth of the chord is a parameter of its own.
-    Scene(range: Number) {
+    Scene(range: NumberStrategy) {
         radius: f64 = sized(-3.0, 3.0),
         centre: [f64; 3] = [between(-2.0, 2.0); 3],
         direction: [f64; 3] = [between(-1.0, 1.0); 3],
@@ -51,7 +51,7 @@ parameters! {
 }
 
 /// A ball, and a ray that passes its centre at `(1 − depth)` radii.
-struct Chord {
+struct BallChord {
     ball: Bounds,
     centre: Point,
     radius: f64,
@@ -59,7 +59,7 @@ struct Chord {
 }
 
 impl Scene {
-    fn chord(&self, depth: f64) -> Option<Chord> {
+    fn chord(&self, depth: f64) -> Option<BallChord> {
         let radius = self.radius;
         let centre = Point(self.centre) * radius;
         let direction = Point(self.direction).normalised()?;
@@ -68,11 +68,11 @@ impl Scene {
         let away = self.away * radius;
         let origin = centre + aside * (radius * (1.0 - depth)) - direction * away;
         let ray = Ray::new(origin, direction, 2.0 * away + 4.0 * radius)?;
-        Some(Chord { ball: Bounds::Sphere { centre, radius }, centre, radius, ray })
+        Some(BallChord { ball: Bounds::Sphere { centre, radius }, centre, radius, ray })
     }
 }
 
-impl Chord {
+impl BallChord {
     /// Both ends of the chord on the line of the ray; `None` for a miss.
     fn exact(&self) -> Option<[DoubleDouble; 2]> {
         let axes = [0, 1, 2].map(|i| {

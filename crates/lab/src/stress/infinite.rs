@@ -18,19 +18,21 @@ use theory::space::infinite;
 const STEPS: i32 = 6;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let (nodes, angles) = (cut_nodes(), angles());
     let range = "c = 0 … 1 − 1e-15, distances 1e-8 …";
     let of_case = [
-        Row::stated("collisions within a radius", format!("{range} 1e4")),
-        Row::stated("fluence of a point source", format!("{range} 600")),
+        TrialRow::stated("collisions within a radius", format!("{range} 1e4")),
+        TrialRow::stated("fluence of a point source", format!("{range} 600")),
     ];
     let mut rows = run.fill([16, 192], of_case, Distances::any, |p, seen| case(p, &nodes, seen));
-    let row =
-        Row::stated("squared distance at absorption", "a = 0 … 1 − 1e-15, mean cosines −1 … 1");
+    let row = TrialRow::stated(
+        "squared distance at absorption",
+        "a = 0 … 1 − 1e-15, mean cosines −1 … 1",
+    );
     rows.extend(run.fill([320, 3840], [row], || (share(), between(-1.0, 1.0)), totals));
     let range = "a = 0 … 1, μ = 1e-9 … 1";
-    let row = Row::relative("Chandrasekhar's H-function", range, h_function::ERROR);
+    let row = TrialRow::relative("Chandrasekhar's H-function", range, h_function::ERROR);
     rows.extend(run.fill([16, 192], [row], Cosines::any, |p, seen| half_space(p, &angles, seen)));
     rows
 }
@@ -54,13 +56,13 @@ fn n(x: f64) -> DoubleDouble {
 }
 
 /// A place of Case's integral: y, ν and `dν` there.
-struct Node {
+struct CaseNode {
     y: DoubleDouble,
     nu: DoubleDouble,
     weight: DoubleDouble,
 }
 
-fn cut_nodes() -> Vec<Node> {
+fn cut_nodes() -> Vec<CaseNode> {
     // Below e⁻⁷⁶ lies 1e-33 of the integral, above e³¹ 1e-27.
     let steps = -76 * STEPS..=31 * STEPS;
     let node = |i: i32| {
@@ -69,7 +71,7 @@ fn cut_nodes() -> Vec<Node> {
         let square = w * w + w.scaled(1) + 2.0;
         let nu = (w * w + w.scaled(1)) / square;
         let rest = ((w + 1.0) / square).powi(2).scaled(2);
-        Node { y: w.ln_1p(), nu, weight: rest * w / (1.0 + w) / f64::from(STEPS) }
+        CaseNode { y: w.ln_1p(), nu, weight: rest * w / (1.0 + w) / f64::from(STEPS) }
     };
     steps.map(node).collect()
 }
@@ -119,10 +121,10 @@ fn hyperbolic(y: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     ((grown + grown * inverse).scaled(-1), (grown + 1.0 + inverse).scaled(-1))
 }
 
-fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) {
+fn case(distances: &Distances, nodes: &[CaseNode], seen: &mut Seen) {
     let albedo = distances.albedo.min(1.0 - 1e-15);
     let c = n(albedo);
-    let of_node = |node: &Node| {
+    let of_node = |node: &CaseNode| {
         let a = 1.0 - c * node.nu * node.y;
         let b = DoubleDouble::PI.scaled(-1) * c * node.nu;
         node.weight / (a * a + b * b)
@@ -142,7 +144,7 @@ fn case(distances: &Distances, nodes: &[Node], seen: &mut Seen) {
 
 fn collisions(
     r: DoubleDouble,
-    nodes: &[Node],
+    nodes: &[CaseNode],
     g: &[DoubleDouble],
     pole: Option<[DoubleDouble; 2]>,
     c: DoubleDouble,
@@ -158,7 +160,7 @@ fn collisions(
 
 fn around(
     r: DoubleDouble,
-    nodes: &[Node],
+    nodes: &[CaseNode],
     g: &[DoubleDouble],
     pole: Option<[DoubleDouble; 2]>,
     c: DoubleDouble,

@@ -8,23 +8,24 @@
 //! ```
 
 use super::equations::{binomial, power};
-use super::nodes::{Both, Line, Solution, after};
+use super::nodes::{BothDirections, PanelLine, Solution, after};
 use super::prelude::*;
 use super::rods::{moments_of, rod_with, rule};
-use theory::problems::rod::{self, HIGHEST_ORDER, MAX_PARTS, Quantity};
+use theory::problems::rod::{self, HIGHEST_ORDER, MAX_PARTS, RodQuantity};
 use theory::{ParticleRule, rod as rods};
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "to order 6, 1 … 4 parts, two albedos, τ = 1e-6 … 30";
     #[allow(clippy::cast_possible_truncation)] // six
     let highest = HIGHEST_ORDER as usize;
     let case = || Case::any(sized(-6.0, 1.48), highest..=highest);
-    let mut rows = run.fill([16, 256], SEEN.map(|seen| Row::stated(seen, range)), case, truths);
+    let mut rows =
+        run.fill([16, 256], SEEN.map(|seen| TrialRow::stated(seen, range)), case, truths);
     let range = "to order 3, 1 … 4 parts, 3 rules, r = 0.1 … 3, τ = 1e-3 … 10";
     let of_walks = std::array::from_fn::<_, 6, _>(|i| {
         let what = ["variance", "fourth moment"][i / 3];
-        Row::stated(format!("{what}, {}", SEEN[i % 3]), range)
+        TrialRow::stated(format!("{what}, {}", SEEN[i % 3]), range)
     });
     let walks = || (Case::any(sized(-3.0, 1.0), 1..=3), sized(-1.0, 0.5), 0..3_usize);
     rows.extend(run.fill([8, 96], of_walks, walks, moments));
@@ -35,18 +36,18 @@ const SEEN: [&str; 3] =
     ["orders of scattering in a rod", "flux inside a rod", "absorption in a rod"];
 
 /// The row of a channel.
-fn row_of(seen: Quantity) -> Option<usize> {
+fn row_of(seen: RodQuantity) -> Option<usize> {
     match seen {
-        Quantity::ReflectedBy(_) | Quantity::TransmittedBy(_) => Some(0),
-        Quantity::Flux(_) => Some(1),
-        Quantity::Absorbed => Some(2),
-        Quantity::Reflected | Quantity::Transmitted => None,
+        RodQuantity::ReflectedBy(_) | RodQuantity::TransmittedBy(_) => Some(0),
+        RodQuantity::Flux(_) => Some(1),
+        RodQuantity::Absorbed => Some(2),
+        RodQuantity::Reflected | RodQuantity::Transmitted => None,
     }
 }
 
 parameters! {
     /// A rod of one or two halves, and what is seen of it.
-    Case(range: Number, orders: std::ops::RangeInclusive<usize>) {
+    Case(range: NumberStrategy, orders: std::ops::RangeInclusive<usize>) {
         depth: f64 = range,
         forward: f64 = share(),
         albedo: Vec<f64> = vec(share(), 1..=2),
@@ -56,7 +57,7 @@ parameters! {
 }
 
 impl Case {
-    fn channels(&self) -> Vec<Quantity> {
+    fn channels(&self) -> Vec<RodQuantity> {
         rod::channels(self.parts, true, Some(self.highest_order))
     }
 
@@ -68,7 +69,7 @@ impl Case {
 fn truths(case: &Case, seen: &mut Seen) {
     let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
     let found = rods::truth(&mesh, &rod);
-    let exact = Exact::new(case, ParticleRule::Terminating, case.depth, 1);
+    let exact = ExactScores::new(case, ParticleRule::Terminating, case.depth, 1);
     for (i, channel) in case.channels().into_iter().enumerate() {
         let Some(row) = row_of(channel) else { continue };
         seen.at(channel.name());
@@ -85,7 +86,7 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
     let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
     let flown = Piecewise::constant(sampling, mesh.support());
     let found = rods::predict(&mesh, &rod, &flown, rule, true);
-    let exact = Exact::new(case, rule, sampling, 4);
+    let exact = ExactScores::new(case, rule, sampling, 4);
     for (i, channel) in case.channels().into_iter().enumerate() {
         let Some(row) = row_of(channel) else { continue };
         seen.at(channel.name());
@@ -99,15 +100,15 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
 /// Twelfths hold halves, thirds and quarters.
 const STRETCHES: usize = 12;
 /// Values of 0, in both directions.
-const NOTHING: Both = [DoubleDouble { high: 0.0, low: 0.0 }; 2];
+const NOTHING: BothDirections = [DoubleDouble { high: 0.0, low: 0.0 }; 2];
 
 /// Light that leaves by order at the end and at the beginning, and scores, to the powers 1 … 4.
-struct Exact<'a> {
+struct ExactScores<'a> {
     case: &'a Case,
     sampling: DoubleDouble,
     /// `σ_t/σ̂`.
     ratio: DoubleDouble,
-    line: Line,
+    line: PanelLine,
     /// Number of the stretch of every node.
     stretches: Vec<usize>,
     /// Q and S of the stretches to the powers 0 … 4.
@@ -117,7 +118,7 @@ struct Exact<'a> {
     orders: [Vec<Vec<DoubleDouble>>; 2],
 }
 
-impl<'a> Exact<'a> {
+impl<'a> ExactScores<'a> {
     fn new(case: &'a Case, rule: ParticleRule, sampling: f64, powers: usize) -> Self {
         let ratio = DoubleDouble::from(case.depth) / sampling;
         let of = |albedo: f64| [0, 1, 2, 3, 4].map(|k| moments_of(rule, ratio, albedo, k));
@@ -131,7 +132,7 @@ impl<'a> Exact<'a> {
         };
         let ends: Vec<DoubleDouble> =
             (0..=STRETCHES).map(|i| DoubleDouble::from(i as f64) / STRETCHES as f64).collect();
-        let line = Line::new(&ends, fastest);
+        let line = PanelLine::new(&ends, fastest);
         let stretches = line.values(|stretch, _| stretch);
         let (sampling, orders) = (DoubleDouble::from(sampling), Default::default());
         let mut found = Self { case, sampling, ratio, line, stretches, odds, powers, orders };
@@ -140,11 +141,11 @@ impl<'a> Exact<'a> {
     }
 
     /// `E[X], …, E[X^k]` of a channel, the others 0.
-    fn powers(&self, seen: Quantity) -> [DoubleDouble; 4] {
+    fn powers(&self, seen: RodQuantity) -> [DoubleDouble; 4] {
         match seen {
-            Quantity::ReflectedBy(order) => self.of_order(order, 1),
-            Quantity::TransmittedBy(order) => self.of_order(order, 0),
-            Quantity::Flux(part) => {
+            RodQuantity::ReflectedBy(order) => self.of_order(order, 1),
+            RodQuantity::TransmittedBy(order) => self.of_order(order, 0),
+            RodQuantity::Flux(part) => {
                 // σ̂c = 1/width.
                 let score = self.case.parts as f64 / self.sampling;
                 self.scores(&|stretch| {
@@ -193,7 +194,7 @@ impl<'a> Exact<'a> {
 
     /// `E[Y^j]` of a score c.
     fn scores(&self, score: &dyn Fn(usize) -> DoubleDouble) -> [DoubleDouble; 4] {
-        let mut known: Vec<Solution<Both>> = Vec::new();
+        let mut known: Vec<Solution<BothDirections>> = Vec::new();
         for j in 1..=self.powers {
             let rates = |stretch: usize| {
                 let [onward, turned] = self.odds(stretch, j);

@@ -13,22 +13,22 @@
 
 use super::equations::{binomial, power};
 use super::fields::homogeneous;
-use super::nodes::{Both, Line, Solution, after};
+use super::nodes::{BothDirections, PanelLine, Solution, after};
 use super::prelude::*;
 use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitRod;
-use theory::rod::bidirectional::{self, Connection, Rules, Scene};
+use theory::rod::bidirectional::{self, Connection, DrawRules, RodScene};
 use theory::rod::lit;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range =
         "3 shadows, 2 heuristics, r = 0.1 … 1, τ = 1e-3 … 10, a and p_f next to 0 and 1, too";
-    let row = Row::moments("walks in a rod with an emitter", range);
+    let row = TrialRow::moments("walks in a rod with an emitter", range);
     let mut rows = run.fill([16, 960], row, Lit::any, lit);
     let range = "order 0 … 4, each technique, r = 0.1 … 1, τ = 1e-3 … 5";
-    let mut of_paths = vec![Row::stated("light of bidirectional paths", range)];
-    of_paths.extend(Row::moments("bidirectional paths in a rod", range));
+    let mut of_paths = vec![TrialRow::stated("light of bidirectional paths", range)];
+    of_paths.extend(TrialRow::moments("bidirectional paths in a rod", range));
     rows.extend(run.fill([16, 640], of_paths, Bidirectional::any, bidirectional));
     rows
 }
@@ -90,16 +90,17 @@ fn moments(case: &Lit, shadow: Shadow) -> [DoubleDouble; 4] {
         Shadow::Delta => depth * f64::from(u8::from(k > 0)),
         Shadow::Ratio => depth / case.ratio * (1.0 - power(null, k)),
     });
-    let line =
-        Line::new(&[0.0, 1.0].map(DoubleDouble::from), |_| 2.0 * losses[4].high.max(depth.high));
+    let line = PanelLine::new(&[0.0, 1.0].map(DoubleDouble::from), |_| {
+        2.0 * losses[4].high.max(depth.high)
+    });
     let (scattered, ways) = (albedo * depth, [forward, 1.0 - forward]);
     let rates = [depth - scattered * forward, scattered * (1.0 - forward)];
     let scores = line.values(|_, x| {
         // e^{−loss} of the way that is left.
         let left = losses.map(|loss| (-(loss * (1.0 - x))).exp());
-        ways.map(|phase| Scores::new(case.combination, phase, left))
+        ways.map(|phase| ScatteringScores::new(case.combination, phase, left))
     });
-    let mut found: Vec<Solution<Both>> = Vec::new();
+    let mut found: Vec<Solution<BothDirections>> = Vec::new();
     for k in 1..=4 {
         let scored = |i: usize, way: usize| {
             let (phase, scores) = (ways[way], &scores[i][way]);
@@ -119,10 +120,10 @@ fn moments(case: &Lit, shadow: Shadow) -> [DoubleDouble; 4] {
 }
 
 /// Values of 0, in both directions.
-const NOTHING: Both = [DoubleDouble { high: 0.0, low: 0.0 }; 2];
+const NOTHING: BothDirections = [DoubleDouble { high: 0.0, low: 0.0 }; 2];
 
 /// Scores of a scattering.
-struct Scores {
+struct ScatteringScores {
     /// Probability that a flight reaches the emitter.
     alive: DoubleDouble,
     /// `E[s^k]`, k = 0 … 4.
@@ -131,7 +132,7 @@ struct Scores {
     hit: DoubleDouble,
 }
 
-impl Scores {
+impl ScatteringScores {
     /// Given the phase function towards the emitter, and `E[T̂^k]`.
     fn new(
         combination: Combination,
@@ -165,8 +166,8 @@ fn bidirectional(case: &Bidirectional, seen: &mut Seen) -> Option<()> {
     let order = if is_transmitted { order - 1 } else { order };
     let s = case.light_vertices % (order + 3);
     let depth = Known::exact(depth);
-    let scene = Scene { depth, albedo, forward, is_transmitted, orders: order..=order };
-    let rules = Rules {
+    let scene = RodScene { depth, albedo, forward, is_transmitted, orders: order..=order };
+    let rules = DrawRules {
         combination: bidirectional::Combination::Technique(s),
         connection: ratio.map_or(Connection::Exact, Connection::Ratio),
         is_shared: false,
@@ -197,7 +198,7 @@ fn of_paths(case: &Bidirectional, (order, s): (usize, usize), k: usize) -> Doubl
             depth + depth * null / ratio * (1.0 - power(null, k - 1))
         }
     };
-    let line = Line::new(&[0.0, 1.0].map(DoubleDouble::from), |_| {
+    let line = PanelLine::new(&[0.0, 1.0].map(DoubleDouble::from), |_| {
         (0..=order).map(|j| loss(j).high).fold(0.0, f64::max)
     });
     let mut ends = NOTHING;

@@ -12,17 +12,17 @@ use super::prelude::*;
 use super::slabs::henyey_greenstein;
 use theory::light::{Combination, Densities, Heuristic, Shadow, Techniques};
 use theory::problems::LitSlab;
-use theory::problems::lit_slab::Light;
+use theory::problems::lit_slab::LightBehind;
 use theory::slab::lit;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "a beam, 3 shadows, r = 0.1 … 1, τ = 1e-3 … 10, τ/μ < 60, |g| to 0.9";
-    let mut of_beam = vec![Row::stated("light behind a slab", range)];
-    of_beam.extend(Row::moments("draws of light behind a slab", range));
+    let mut of_beam = vec![TrialRow::stated("light behind a slab", range)];
+    of_beam.extend(TrialRow::moments("draws of light behind a slab", range));
     let mut rows = run.fill([32, 1280], of_beam, Slab::any, beam);
     let range = "caps and discs, 2 shadows, 2 heuristics, directional and full, |g| to 0.9";
-    let row = Row::stated("mean of techniques behind a slab", range);
+    let row = TrialRow::stated("mean of techniques behind a slab", range);
     rows.extend(run.fill([4, 256], [row], Slab::any, mean));
     rows
 }
@@ -43,7 +43,7 @@ parameters! {
 }
 
 impl Slab {
-    fn problem(&self, light: Light) -> (Mesh, LitSlab, Piecewise) {
+    fn problem(&self, light: LightBehind) -> (Mesh, LitSlab, Piecewise) {
         let medium = homogeneous(self.depth, 1.0);
         let flown = Piecewise::constant(self.depth / self.ratio, medium.span());
         let phase = henyey_greenstein(self.asymmetry);
@@ -55,7 +55,7 @@ impl Slab {
 /// `E[X^k]` of shadow rays to a beam.
 fn beam(slab: &Slab, seen: &mut Seen) {
     let cosine = slab.cosine.max(slab.depth / 60.0);
-    let (mesh, problem, flown) = slab.problem(Light::Distant(cosine));
+    let (mesh, problem, flown) = slab.problem(LightBehind::Distant(cosine));
     let techniques = Techniques { shadow: Some(slab.shadow), combination: Combination::NextEvent };
     let found = lit::predict(&mesh, &problem, &flown, techniques, true);
     let (depth, null) = (DoubleDouble::from(slab.depth), 1.0 - DoubleDouble::from(slab.ratio));
@@ -78,9 +78,9 @@ fn beam(slab: &Slab, seen: &mut Seen) {
 /// Hits and shadow rays, weighted, have the mean of shadow rays alone.
 fn mean(slab: &Slab, seen: &mut Seen) -> Option<()> {
     let light = if slab.is_disc {
-        Light::Disc { distance: slab.distance, radius: 0.5 }
+        LightBehind::Disc { distance: slab.distance, radius: 0.5 }
     } else {
-        Light::Cap(slab.cosine.min(0.99))
+        LightBehind::Cap(slab.cosine.min(0.99))
     };
     let (mesh, problem, flown) = slab.problem(light);
     if lit::slant_depth(&mesh, &problem).is_some() {

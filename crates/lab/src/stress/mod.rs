@@ -81,8 +81,10 @@ pub mod walks;
 
 /// Imports of most pages.
 mod prelude {
-    pub(super) use super::parameters::{Number, any_of, between, parameters, share, sign, sized};
-    pub(super) use super::row::{Measure, Row};
+    pub(super) use super::parameters::{
+        NumberStrategy, any_of, between, parameters, share, sign, sized,
+    };
+    pub(super) use super::row::{Measure, TrialRow};
     pub(super) use super::table::{Run, Seen, central, off, over};
     pub(super) use media::{Control, Medium, Piecewise};
     pub(super) use numeric::quadrature::GaussLegendre;
@@ -93,7 +95,7 @@ mod prelude {
     pub(super) use theory::Mesh;
 }
 
-pub use self::row::{Measure, Row};
+pub use self::row::{Measure, TrialRow};
 pub use self::table::{Effort, Run};
 use media::catalogue::Registry;
 use media::registry;
@@ -103,7 +105,7 @@ use theory::parallel;
 #[derive(Debug, Clone)]
 pub struct Stress {
     /// One row per quantity.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TrialRow>,
     /// Comparison of single precision with doubles.
     pub narrow: narrow::Narrow,
     /// Wall-clock seconds.
@@ -113,7 +115,7 @@ pub struct Stress {
 impl Stress {
     /// Returns whether every bound holds.
     pub fn holds(&self) -> bool {
-        self.rows.iter().all(Row::holds)
+        self.rows.iter().all(TrialRow::holds)
     }
 }
 
@@ -162,7 +164,7 @@ pub fn all(run: Run, done: &(dyn Fn(&str) + Sync)) -> Stress {
             narrow
         },
     );
-    let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
+    let mut rows: Vec<TrialRow> = rows.into_iter().flatten().collect();
     rows.extend(narrow.rows());
     Stress { rows, narrow, seconds: begin.elapsed().as_secs_f64() }
 }

@@ -13,13 +13,13 @@ use theory::prediction::transmittance;
 use theory::ray::product::Product;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let trials = [192, 6400];
-    let rows = Row::moments("products", "τ = 1e-12 … 1e3, σ̂/σ_t = 1e-9 … 1e9");
+    let rows = TrialRow::moments("products", "τ = 1e-12 … 1e3, σ̂/σ_t = 1e-9 … 1e9");
     let mut rows = run.fill(trials, rows, of_any_size, products);
-    let special = Row::moments("products", "r near 0, 1, 2, ±1e3; τ = 1e-6 … 50 collisions");
+    let special = TrialRow::moments("products", "r near 0, 1, 2, ±1e3; τ = 1e-6 … 50 collisions");
     rows.extend(run.fill(trials, special, of_special_ratios, products));
-    let row = Row::stated("transmittance", "τ = 1e-12 … 1e9, in units of e^{−τ} beyond 300");
+    let row = TrialRow::stated("transmittance", "τ = 1e-12 … 1e9, in units of e^{−τ} beyond 300");
     rows.extend(run.fill(trials, [row], Depth::any, transmittances));
     rows
 }

@@ -20,13 +20,13 @@ const NODES: usize = 20;
 const STEEPEST: f64 = 2.0;
 
 /// Gauss' rule on `[0, 1]` with its running integrals.
-struct Rule {
+struct GaussRule {
     nodes: [DoubleDouble; NODES],
     weights: [DoubleDouble; NODES],
     running: [[DoubleDouble; NODES]; NODES],
 }
 
-static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
+static RULE: LazyLock<GaussRule> = LazyLock::new(GaussRule::new);
 
 /// Legendre polynomials of the degrees 0 … N.
 fn legendre(x: DoubleDouble) -> [DoubleDouble; NODES + 1] {
@@ -39,7 +39,7 @@ fn legendre(x: DoubleDouble) -> [DoubleDouble; NODES + 1] {
     p
 }
 
-impl Rule {
+impl GaussRule {
     /// Finds the nodes by Newton's method from those in doubles; `∫ Pₖ = (Pₖ₊₁ − Pₖ₋₁)/(2k + 1)`.
     fn new() -> Self {
         let slope = |x: DoubleDouble, p: &[DoubleDouble]| {
@@ -74,14 +74,14 @@ fn sum(weights: &[DoubleDouble; NODES], values: &[DoubleDouble]) -> DoubleDouble
 
 /// A part of a line.
 #[derive(Debug, Clone, Copy)]
-struct Panel {
+struct LinePanel {
     stretch: usize,
     from: DoubleDouble,
     width: DoubleDouble,
 }
 
 /// A line in panels.
-pub(super) struct Line(Vec<Panel>);
+pub(super) struct PanelLine(Vec<LinePanel>);
 
 /// Values at the nodes of a line, in order, and at its beginning.
 pub(super) struct Solution<T> {
@@ -91,7 +91,7 @@ pub(super) struct Solution<T> {
     pub begin: T,
 }
 
-impl Line {
+impl PanelLine {
     /// Cuts the stretches between ends into panels, given the largest rate in each.
     pub fn new(ends: &[DoubleDouble], rate: impl Fn(usize) -> f64) -> Self {
         let cut = |(stretch, pair): (usize, &[DoubleDouble])| {
@@ -99,14 +99,15 @@ impl Line {
             let count = (rate(stretch) * length.high / STEEPEST).ceil().max(1.0);
             let (from, width) = (pair[0], length / count);
             let panels = (0..).map(f64::from).take_while(move |&i| i < count);
-            panels.map(move |i| Panel { stretch, from: from + width * i, width })
+            panels.map(move |i| LinePanel { stretch, from: from + width * i, width })
         };
         Self(ends.windows(2).enumerate().flat_map(cut).collect())
     }
 
     /// Returns the value of a function of the stretch and the place at every node.
     pub fn values<T>(&self, f: impl Fn(usize, DoubleDouble) -> T) -> Vec<T> {
-        let place = |panel: &Panel, x: DoubleDouble| f(panel.stretch, panel.from + panel.width * x);
+        let place =
+            |panel: &LinePanel, x: DoubleDouble| f(panel.stretch, panel.from + panel.width * x);
         self.0.iter().flat_map(|panel| RULE.nodes.map(|x| place(panel, x))).collect()
     }
 
@@ -144,7 +145,7 @@ impl Line {
         rates: impl Fn(usize) -> [DoubleDouble; 2],
         source: impl Fn(usize) -> [DoubleDouble; 2],
         [first, last]: [DoubleDouble; 2],
-    ) -> Solution<Both> {
+    ) -> Solution<BothDirections> {
         let panels = self.0.iter().enumerate();
         let panels = panels.map(|(number, panel)| {
             Passage::new(rates(panel.stretch), panel.width, |node| source(number * NODES + node))
@@ -174,7 +175,7 @@ struct Passage {
     /// `e^{Mt}`.
     flows: [Flow; NODES + 1],
     /// `∫₀ᵗ e^{−Mt'} (s₊, −s₋) dt'`.
-    lost: [Both; NODES + 1],
+    lost: [BothDirections; NODES + 1],
 }
 
 impl Passage {
@@ -186,7 +187,7 @@ impl Passage {
     ) -> Self {
         let place = |node: usize| if node < NODES { RULE.nodes[node] } else { DoubleDouble::ONE };
         let flows = std::array::from_fn(|node| Flow::new(rates, width * place(node)));
-        let rate: [Both; NODES] = std::array::from_fn(|node| {
+        let rate: [BothDirections; NODES] = std::array::from_fn(|node| {
             let [plus, minus] = source(node);
             Flow::back(flows[node], [plus, -minus])
         });
@@ -199,7 +200,7 @@ impl Passage {
     }
 
     /// The values at a node, given those at the beginning.
-    fn value(&self, node: usize, begin: Both) -> Both {
+    fn value(&self, node: usize, begin: BothDirections) -> BothDirections {
         let lost = self.lost[node];
         self.flows[node].on([begin[0] - lost[0], begin[1] - lost[1]])
     }
@@ -217,7 +218,7 @@ impl Beyond {
     ///
     /// `m₊ − returned · m₋ = emitted` at the end is linear in the values at the beginning.
     fn before(self, panel: &Passage) -> Self {
-        let at_end = |begin: Both| {
+        let at_end = |begin: BothDirections| {
             let [plus, minus] = panel.flows[NODES].on(begin);
             plus - self.returned * minus
         };
@@ -231,7 +232,7 @@ impl Beyond {
 }
 
 /// Values of a particle that goes forward, and of one that goes backward.
-pub(super) type Both = [DoubleDouble; 2];
+pub(super) type BothDirections = [DoubleDouble; 2];
 
 /// The matrix `e^{Mt}` by three numbers: `cosh κt`, `A sinh(κt)/κ` and `B sinh(κt)/κ`.
 #[derive(Clone, Copy)]
@@ -251,19 +252,22 @@ impl Flow {
         Self([even, a * t * odd, b * t * odd])
     }
 
-    fn on(self, [plus, minus]: Both) -> Both {
+    fn on(self, [plus, minus]: BothDirections) -> BothDirections {
         let Self([even, a, b]) = self;
         [(even + a) * plus - b * minus, b * plus + (even - a) * minus]
     }
 
     /// `e^{−Mt}`.
-    fn back(self, both: Both) -> Both {
+    fn back(self, both: BothDirections) -> BothDirections {
         let Self([even, a, b]) = self;
         Self([even, -a, -b]).on(both)
     }
 }
 
 /// Values after a collision that leads onward or turns, with these factors.
-pub(super) fn after([onward, turned]: [DoubleDouble; 2], [plus, minus]: Both) -> Both {
+pub(super) fn after(
+    [onward, turned]: [DoubleDouble; 2],
+    [plus, minus]: BothDirections,
+) -> BothDirections {
     [onward * plus + turned * minus, onward * minus + turned * plus]
 }

@@ -17,7 +17,7 @@
 
 use super::equations::solved;
 use super::prelude::*;
-use theory::problems::slab::Light;
+use theory::problems::slab::IncidentLight;
 
 /// Directions and the solutions in them.
 pub struct Ordinates {
@@ -140,8 +140,8 @@ impl Ordinates {
     }
 
     /// R and T.
-    pub fn energy(&self, light: Light) -> [DoubleDouble; 2] {
-        if let Light::Collimated(cosine) = light {
+    pub fn energy(&self, light: IncidentLight) -> [DoubleDouble; 2] {
+        if let IncidentLight::Collimated(cosine) = light {
             return self.leaving(DoubleDouble::from(cosine));
         }
         let mut sums = [DoubleDouble::default(); 3];

@@ -33,7 +33,7 @@ pub(super) use parameters;
 
 /// Distribution of a number.
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+enum NumberDistribution {
     Uniform,
     LogUniform,
     NearEnds,
@@ -41,25 +41,29 @@ enum Kind {
 
 /// Strategy for a number in an interval.
 #[derive(Debug, Clone, Copy)]
-pub struct Number {
+pub struct NumberStrategy {
     low: f64,
     high: f64,
-    kind: Kind,
+    kind: NumberDistribution,
 }
 
 /// Uniform number in `[low, high)`.
-pub fn between(low: f64, high: f64) -> Number {
-    Number { low, high, kind: Kind::Uniform }
+pub fn between(low: f64, high: f64) -> NumberStrategy {
+    NumberStrategy { low, high, kind: NumberDistribution::Uniform }
 }
 
 /// Number between two powers of ten, uniform in its logarithm.
-pub fn sized(low: f64, high: f64) -> Number {
-    Number { low: 10f64.powf(low), high: 10f64.powf(high), kind: Kind::LogUniform }
+pub fn sized(low: f64, high: f64) -> NumberStrategy {
+    NumberStrategy {
+        low: 10f64.powf(low),
+        high: 10f64.powf(high),
+        kind: NumberDistribution::LogUniform,
+    }
 }
 
 /// Number in [0, 1], often next to an end.
-pub fn share() -> Number {
-    Number { low: 0.0, high: 1.0, kind: Kind::NearEnds }
+pub fn share() -> NumberStrategy {
+    NumberStrategy { low: 0.0, high: 1.0, kind: NumberDistribution::NearEnds }
 }
 
 /// One item of a list.
@@ -76,7 +80,7 @@ pub fn sign() -> impl Strategy<Value = f64> {
 #[derive(Debug, Clone, Copy)]
 pub struct Digits {
     exact: f64,
-    number: Number,
+    number: NumberStrategy,
     /// Significant digits shown; all of them at [`Digits::ALL`].
     shown: usize,
     is_shrunk: bool,
@@ -86,7 +90,7 @@ impl Digits {
     const ALL: usize = 17;
 }
 
-impl Strategy for Number {
+impl Strategy for NumberStrategy {
     type Tree = Digits;
     type Value = f64;
 
@@ -96,9 +100,9 @@ impl Strategy for Number {
         let Self { low, high, kind } = *self;
         let decades = |u: f64, low: f64, high: f64| 10f64.powf(low + (high - low) * u);
         let exact = match kind {
-            Kind::Uniform => low + (high - low) * uniform(),
-            Kind::LogUniform => decades(uniform(), low.log10(), high.log10()),
-            Kind::NearEnds => {
+            NumberDistribution::Uniform => low + (high - low) * uniform(),
+            NumberDistribution::LogUniform => decades(uniform(), low.log10(), high.log10()),
+            NumberDistribution::NearEnds => {
                 let [kind, u] = [5.0 * uniform(), uniform()];
                 match kind {
                     0.0..1.0 => decades(u, -12.0, -1.0),

@@ -12,7 +12,7 @@
 use super::equations::solved;
 use super::prelude::*;
 use numeric::exponential_integrals as exponentials;
-use theory::problems::slab::Light;
+use theory::problems::slab::IncidentLight;
 
 /// Nodes of a panel.
 const NODES: usize = 7;
@@ -22,18 +22,18 @@ const THICKEST: f64 = 1.0;
 const SHRINKS: i32 = 7;
 
 /// l and s of a slab from 0 to 1.
-pub type Rates<'a> = dyn Fn(f64) -> [f64; 2] + 'a;
+pub type SlabRates<'a> = dyn Fn(f64) -> [f64; 2] + 'a;
 
 /// A part of a slab between two depths u.
-struct Panel {
+struct SlabPanel {
     x: Span,
     u: Span,
 }
 
 /// A slab cut into panels.
 pub struct Peierls<'a> {
-    rates: &'a Rates<'a>,
-    panels: Vec<Panel>,
+    rates: &'a SlabRates<'a>,
+    panels: Vec<SlabPanel>,
     /// x, u, and `½ s dx` of every node.
     nodes: Vec<[f64; 3]>,
     rule: GaussLegendre,
@@ -43,7 +43,7 @@ pub struct Peierls<'a> {
 
 impl<'a> Peierls<'a> {
     /// Cut at the given places inside.
-    pub fn new(rates: &'a Rates<'a>, breaks: &[f64]) -> Self {
+    pub fn new(rates: &'a SlabRates<'a>, breaks: &[f64]) -> Self {
         let (rule, finer) = (GaussLegendre::new(NODES), GaussLegendre::new(24));
         let mut ends = vec![0.0, 0.5, 1.0];
         ends.extend(breaks);
@@ -62,7 +62,7 @@ impl<'a> Peierls<'a> {
                 let x = Span::new(end(part), end(part + 1.0));
                 let u = Span::new(depth, depth + over(x));
                 depth = u.to;
-                panels.push(Panel { x, u });
+                panels.push(SlabPanel { x, u });
             }
         }
         let mut slab = Self { rates, panels, nodes: Vec::new(), rule, finer, depth };
@@ -74,17 +74,17 @@ impl<'a> Peierls<'a> {
     }
 
     /// u at a place of a panel.
-    fn depth_at(&self, panel: &Panel, x: f64) -> f64 {
+    fn depth_at(&self, panel: &SlabPanel, x: f64) -> f64 {
         panel.u.from + self.rule.integrate(panel.x.from, x, |x| (self.rates)(x)[0])
     }
 
     /// Factors of a panel's nodes in the polynomial through them.
-    fn polynomial(&self, panel: &Panel, x: f64) -> Vec<f64> {
+    fn polynomial(&self, panel: &SlabPanel, x: f64) -> Vec<f64> {
         self.rule.weights_at((x - panel.x.from) / panel.x.length())
     }
 
     /// `½ ∫ E₁(|u − u'|) s ℓ dx'` over a panel, of all its polynomials.
-    fn coupled(&self, [at, depth, _]: [f64; 3], panel: &Panel, nodes: &[[f64; 3]]) -> Vec<f64> {
+    fn coupled(&self, [at, depth, _]: [f64; 3], panel: &SlabPanel, nodes: &[[f64; 3]]) -> Vec<f64> {
         let first = |u: f64| exponentials((u - depth).abs())[0];
         if (panel.u.from - depth).max(depth - panel.u.to) > panel.u.length() {
             return nodes.iter().map(|&[_, u, share]| share * first(u)).collect();
@@ -105,7 +105,7 @@ impl<'a> Peierls<'a> {
 
     /// R and T of several lights; `None` where the equations have no solution, or a negative one: then
     /// more than one particle follows each.
-    pub fn leaving(&self, lights: &[Light]) -> Option<Vec<[f64; 2]>> {
+    pub fn leaving(&self, lights: &[IncidentLight]) -> Option<Vec<[f64; 2]>> {
         let row = |(i, &node): (usize, &[f64; 3])| {
             let panels = self.panels.iter().zip(self.nodes.chunks(NODES));
             let coupled = panels.flat_map(|(panel, nodes)| self.coupled(node, panel, nodes));
@@ -120,10 +120,12 @@ impl<'a> Peierls<'a> {
         if worth.iter().flatten().any(|&worth| worth <= 0.0) {
             return None;
         }
-        let straight = |light: &Light| match *light {
-            Light::Collimated(cosine) => [0.0, (-self.depth / cosine).exp()],
+        let straight = |light: &IncidentLight| match *light {
+            IncidentLight::Collimated(cosine) => [0.0, (-self.depth / cosine).exp()],
             // 2E₃
-            Light::Diffuse => [0.0, (-self.depth).exp() - self.depth * exponentials(self.depth)[1]],
+            IncidentLight::Diffuse => {
+                [0.0, (-self.depth).exp() - self.depth * exponentials(self.depth)[1]]
+            }
         };
         let mut found: Vec<[f64; 2]> = lights.iter().map(straight).collect();
         for (panel, worth) in self.panels.iter().zip(worth.chunks(NODES)) {
@@ -138,8 +140,8 @@ impl<'a> Peierls<'a> {
                 });
                 for (light, found) in lights.iter().zip(&mut found) {
                     let kernel = match *light {
-                        Light::Collimated(cosine) => (-u / cosine).exp() / cosine,
-                        Light::Diffuse => 2.0 * exponentials(u)[1],
+                        IncidentLight::Collimated(cosine) => (-u / cosine).exp() / cosine,
+                        IncidentLight::Diffuse => 2.0 * exponentials(u)[1],
                     };
                     found.iter_mut().zip(worth).for_each(|(sum, w)| *sum += share * kernel * w);
                 }

@@ -7,7 +7,7 @@ use std::array::from_fn;
 
 use super::equations::power;
 use super::prelude::*;
-use super::techniques::{Estimator, Place, Ray};
+use super::techniques::{Estimator, Ray, RayPlace};
 use theory::problems::{Problem, SingleScattering};
 use theory::single::Tracking;
 
@@ -32,7 +32,7 @@ pub(super) fn even<'a>(estimator: &'a Estimator, sigma: f64, highest: u8) -> Ray
         };
         let shadow = losses.map(|loss| (-(loss * r)).exp());
         let scattered = albedo * extinction / square;
-        Place { extinction, scattered, shadow, cast: Some(cast) }
+        RayPlace { extinction, scattered, shadow, cast: Some(cast) }
     };
     let [sampling, control] = estimator.walk;
     let weight = 1.0 - (sigma - control) / sampling;
@@ -70,7 +70,7 @@ pub(super) fn varying<'a>(estimator: &'a Estimator) -> Ray<'a> {
         let medium = problem.shadow_medium(s);
         let shadow = medium.map_or([1.0; 5], |medium| shadow(&medium, estimator.tracking, &rule));
         let scattered = extinction * problem.source(s);
-        Place { extinction, scattered, shadow: shadow.map(DoubleDouble::from), cast: None }
+        RayPlace { extinction, scattered, shadow: shadow.map(DoubleDouble::from), cast: None }
     };
     Ray::new(estimator, &panels(problem, STEPS), 0.0, &place)
 }

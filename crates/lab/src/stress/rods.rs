@@ -10,32 +10,35 @@
 use super::fields::homogeneous;
 use super::prelude::*;
 use theory::problems::Rod;
-use theory::problems::rod::{self, Quantity};
+use theory::problems::rod::{self, RodQuantity};
 use theory::{CountDistribution, ParticleRule, rod as rods};
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
-    let row = Row::stated("rod, closed form", "τ = 1e-9 … 600, a and p_f next to 0 and 1, too");
+pub fn rows(run: Run) -> Vec<TrialRow> {
+    let row =
+        TrialRow::stated("rod, closed form", "τ = 1e-9 … 600, a and p_f next to 0 and 1, too");
     let even = || Parts::any(sized(-9.0, 2.78), 1);
     let mut rows = run.fill([1280, 48_000], [row], even, truths);
-    let row =
-        Row::stated("rod, two-stream equations", "two halves of other albedos, τ = 1e-6 … 100");
+    let row = TrialRow::stated(
+        "rod, two-stream equations",
+        "two halves of other albedos, τ = 1e-6 … 100",
+    );
     let halves = || Parts::any(sized(-6.0, 2.0), 2);
     rows.extend(run.fill([64, 2400], [row], halves, truths));
     let range = "3 rules, r = 0.1 … 3, τ = 1e-3 … 10";
-    let mut of_walks = Row::moments("walks in a rod", range).to_vec();
-    of_walks.push(Row::wrong("diverging variances, wrong", range));
-    of_walks.push(Row::stated("lookups of walks in a rod", range));
+    let mut of_walks = TrialRow::moments("walks in a rod", range).to_vec();
+    of_walks.push(TrialRow::wrong("diverging variances, wrong", range));
+    of_walks.push(TrialRow::stated("lookups of walks in a rod", range));
     rows.extend(run.fill([64, 2400], of_walks, Walked::any, walks));
     let range = "2 rules, 0.0025 … 0.3 below the critical length, r = 2 … 3.2";
-    let row = Row::stated("variance of walks in a nearly critical rod", range);
+    let row = TrialRow::stated("variance of walks in a nearly critical rod", range);
     rows.extend(run.fill([64, 2400], [row], NearCritical::any, near_critical));
     rows
 }
 
 parameters! {
     /// A rod of length 1 in equal parts of other albedos.
-    Parts(range: Number, count: usize) {
+    Parts(range: NumberStrategy, count: usize) {
         depth: f64 = range,
         forward: f64 = share(),
         albedos: Vec<f64> = vec(share(), count),
@@ -90,7 +93,7 @@ pub(super) fn rod_with(
     depth: f64,
     albedo: &[f64],
     forward: f64,
-    channels: Vec<Quantity>,
+    channels: Vec<RodQuantity>,
 ) -> (Mesh, Rod) {
     let medium = homogeneous(depth, 1.0);
     let cuts: Vec<f64> = (0..=albedo.len()).map(|i| i as f64 / albedo.len() as f64).collect();

@@ -30,7 +30,7 @@ impl Measure {
 
 /// The worst error of many trials of one quantity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct TrialRow {
     /// Quantity of the library.
     pub quantity: String,
     /// Range of the parameters.
@@ -53,7 +53,7 @@ pub struct Row {
     pub first_skipped: String,
 }
 
-impl Row {
+impl TrialRow {
     /// A row without trials.
     pub fn new(
         quantity: impl Into<String>,

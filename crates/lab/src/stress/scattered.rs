@@ -3,8 +3,8 @@
 use super::prelude::*;
 use super::rays::{even, varying};
 use super::rods::lookups;
-use super::scattering::{Lit, lit, lit_field};
-use super::techniques::{Estimator, Technique};
+use super::scattering::{LitRay, lit, lit_field};
+use super::techniques::{Estimator, PointTechnique};
 use theory::problems::Problem;
 use theory::single::{CameraTracking, Tracking};
 
@@ -12,7 +12,7 @@ use theory::single::{CameraTracking, Tracking};
 const TECHNIQUES: usize = 6;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "homogeneous, 3 shadows, residuals, σ_t ℓ = 1e-12 … 10, σ̂/σ_t = 0.5 … 1e4, \
                  light 1e-6 … 10 ℓ away";
     let both = || (shallow(), Choices::any());
@@ -28,17 +28,17 @@ pub fn rows(run: Run) -> Vec<Row> {
     }));
     let range = "four fields, controls, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
     let of_fields = ["variance", "fourth moment"]
-        .map(|what| Row::stated(format!("single scattering in fields, {what}"), range));
+        .map(|what| TrialRow::stated(format!("single scattering in fields, {what}"), range));
     rows.extend(run.fill([8, 144], of_fields, InField::any, in_field));
     rows
 }
 
 /// Rows of techniques that scatter at one point, and at many of a walk.
-fn kinds(range: &str) -> [Row; 6] {
+fn kinds(range: &str) -> [TrialRow; 6] {
     let whats = ["variance", "fourth moment", "lookups"];
     std::array::from_fn(|i| {
         let kind = ["at one point", "of walks"][i / 3];
-        Row::stated(format!("single scattering {kind}, {}", whats[i % 3]), range)
+        TrialRow::stated(format!("single scattering {kind}, {}", whats[i % 3]), range)
     })
 }
 
@@ -95,7 +95,7 @@ parameters! {
     }
     /// A scene in a field, and how it is estimated; σ̂ and the control are in units of the largest σ_t.
     InField {
-        lit: Lit = lit_field(),
+        lit: LitRay = lit_field(),
         scale: f64 = sized(-0.2, 0.7),
         shadow_scale: f64 = sized(-0.2, 0.7),
         kind: usize = 0..12_usize,
@@ -132,17 +132,17 @@ fn homogeneous(
         alongs.push(CameraTracking::Delta);
     }
     let [by_angle, by_depth] = chosen.map(|number| alongs[number % alongs.len()]);
-    let all: [Technique; TECHNIQUES] = [
-        Technique::AtCollisions,
-        Technique::Resampled,
-        Technique::SharedWalk,
-        Technique::Delta,
-        Technique::ByAngle(by_angle),
-        Technique::ByDepth(by_depth),
+    let all: [PointTechnique; TECHNIQUES] = [
+        PointTechnique::AtCollisions,
+        PointTechnique::Resampled,
+        PointTechnique::SharedWalk,
+        PointTechnique::Delta,
+        PointTechnique::ByAngle(by_angle),
+        PointTechnique::ByDepth(by_depth),
     ];
     let ray = even(&estimator, sigma, 4);
     for (number, technique) in all.into_iter().enumerate().filter(|&(i, _)| is_wanted(i)) {
-        if technique == Technique::Delta && ratio < 1.0 {
+        if technique == PointTechnique::Delta && ratio < 1.0 {
             continue;
         }
         let found = estimator.found(technique).prediction();
@@ -172,10 +172,10 @@ fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
         _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * most },
     };
     let technique = match kind / 3 {
-        0 => Technique::ByAngle(CameraTracking::Exact),
-        1 => Technique::ByAngle(CameraTracking::Ratio),
-        2 => Technique::AtCollisions,
-        _ => Technique::SharedWalk,
+        0 => PointTechnique::ByAngle(CameraTracking::Exact),
+        1 => PointTechnique::ByAngle(CameraTracking::Ratio),
+        2 => PointTechnique::AtCollisions,
+        _ => PointTechnique::SharedWalk,
     };
     let walk = [scale * largest, held * largest];
     let estimator = Estimator { problem: &problem, walk, tracking, count };

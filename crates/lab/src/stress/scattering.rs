@@ -13,15 +13,15 @@ use numeric::geometry::{Point, Ray};
 use theory::light::Heuristic;
 use theory::problems::single_scattering::Lamp;
 use theory::problems::{Problem, SingleScattering};
-use theory::single::{Camera, CameraTracking, Collisions, Mis, NullPaths, Scene, Tracking};
+use theory::single::{Camera, CameraTracking, Collisions, Mis, NullPaths, RayScene, Tracking};
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
-    let row = Row::stated("single scattering, radiance", range);
+    let row = TrialRow::stated("single scattering, radiance", range);
     let mut rows = run.fill([16, 1280], [row], Even::any, homogeneous);
     let range = "four fields, light 1e-3 … 10 away, g to 0.8; panels of s";
-    let row = Row::stated("single scattering, fields", range);
+    let row = TrialRow::stated("single scattering, fields", range);
     rows.extend(run.fill([4, 1008], [row], lit_field, |field, seen| {
         let problem = field.problem()?;
         let (found, exact) = (radiance(&problem), varying(&alone(&problem, 1.0)).radiance());
@@ -30,7 +30,7 @@ pub fn rows(run: Run) -> Vec<Row> {
     }));
     let range =
         "four fields, points by angle and delta tracking, σ̂ = 1 … 5 of the largest; radiance";
-    let row = Row::stated("equiangular and delta tracking share the light", range);
+    let row = TrialRow::stated("equiangular and delta tracking share the light", range);
     rows.extend(run.fill([4, 256], [row], Shared::any, shares));
     rows
 }
@@ -46,7 +46,7 @@ parameters! {
     }
     /// Points by angle and delta tracking in a field; σ̂ is in units of the largest σ_t.
     Shared {
-        lit: Lit = lit_field(),
+        lit: LitRay = lit_field(),
         scale: f64 = sized(0.01, 0.7),
         heuristic: Heuristic = any_of(&[Heuristic::Balance, Heuristic::Power]),
         has_nulls: bool = proptest::bool::ANY,
@@ -62,7 +62,7 @@ fn shares(case: &Shared, seen: &mut Seen) -> Option<()> {
     let sampling = &Piecewise::constant(scale * largest, mesh.support());
     let along = if has_nulls { CameraTracking::Ratio } else { CameraTracking::Exact };
     let camera = Camera::new(&mesh, sampling, &Control::None, along);
-    let scene = &Scene::new(&problem, camera, Tracking::Exact);
+    let scene = &RayScene::new(&problem, camera, Tracking::Exact);
     let collisions = Collisions { medium, sampling, scatters: problem.albedo() };
     let nulls = has_nulls.then(|| NullPaths::new(&mesh, sampling, heuristic));
     let [light, walk] = Mis { scene, collisions, heuristic, nulls }.points();
@@ -77,7 +77,7 @@ fn radiance(problem: &SingleScattering) -> Known {
     let mesh = Mesh::even(problem.medium().clone(), 1);
     let (nothing, none) = (Piecewise::constant(0.0, mesh.support()), Control::None);
     let camera = Camera::new(&mesh, &nothing, &none, CameraTracking::Exact);
-    Scene::new(problem, camera, Tracking::Exact).radiance()
+    RayScene::new(problem, camera, Tracking::Exact).radiance()
 }
 
 /// An estimator without lookups of shadow rays.
@@ -116,7 +116,7 @@ fn homogeneous(
 
 /// A ray through a field that varies, and a light beside it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lit {
+pub(super) struct LitRay {
     field: Space,
     from: [f64; 2],
     to: [f64; 2],
@@ -126,7 +126,7 @@ pub(super) struct Lit {
     phase: Phase,
 }
 
-pub(super) fn lit_field() -> impl Strategy<Value = Lit> {
+pub(super) fn lit_field() -> impl Strategy<Value = LitRay> {
     let field = any_of(&[
         Space::Eq21,
         Space::Radial,
@@ -137,11 +137,11 @@ pub(super) fn lit_field() -> impl Strategy<Value = Lit> {
     let ends = [[between(-3.0, 3.0); 2]; 2];
     (field, ends, light, between(-0.8, 0.8)).prop_map(|(field, [from, to], light, asymmetry)| {
         let (away, along, turn) = light;
-        Lit { field, from, to, away, along, turn, phase: henyey_greenstein(asymmetry) }
+        LitRay { field, from, to, away, along, turn, phase: henyey_greenstein(asymmetry) }
     })
 }
 
-impl Lit {
+impl LitRay {
     pub fn problem(&self) -> Option<SingleScattering> {
         let &Self { field, from: [x, y], to: [u, v], away, along, turn, phase } = self;
         let origin = Point([x, y, -5.0]);

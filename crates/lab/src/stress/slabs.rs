@@ -7,8 +7,8 @@ use media::phase::{
     Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic, rayleigh::Rayleigh,
 };
 use theory::Kernel;
-use theory::problems::slab::Light;
-use theory::slab::{self, Answer, Energy, Resolution};
+use theory::problems::slab::IncidentLight;
+use theory::slab::{self, Energy, EnergyBounds, Resolution};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 72;
@@ -20,23 +20,23 @@ const NEAR: f64 = 2e-3;
 pub(super) const LIGHTS: usize = 8;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "τ = 1e-6 … 100, μ₀ = 1e-4 … 1, |g| to 0.935; twice the resolution";
-    let row = Row::stated("slab, adding and doubling", range);
+    let row = TrialRow::stated("slab, adding and doubling", range);
     let slab = || (Slab::any(sized(-6.0, 2.0)), phase());
     let mut rows = run.fill([2, 48], [row], slab, |(slab, phase), seen| finer(slab, *phase, seen));
     let range = "isotropic, τ = 1e-2 … 100, μ₀ = 1e-4 … 1; discrete ordinates, 32 digits";
-    let row = Row::stated("slab, another method", range);
+    let row = TrialRow::stated("slab, another method", range);
     rows.extend(run.fill([4, 64], [row], || Slab::any(sized(-2.0, 2.0)), even));
     let range =
         "g = 0.935 … 0.98, peak cut off, τ = 1e-2 … 30, μ₀ = 1e-4 … 1; twice the directions";
-    let row = Row::stated("slab, peaked phase function", range);
+    let row = TrialRow::stated("slab, peaked phase function", range);
     let slab = || (Slab::any(sized(-2.0, 1.48)), between(0.935, 0.98).prop_map(henyey_greenstein));
     rows.extend(run.fill([1, 6], [row], slab, |(slab, phase), seen| finer(slab, *phase, seen)));
     let range = "isotropic, albedo 1e-7 … 0.5 below the critical one, τ = 1e-2 … 10; discrete ordinates, 32 digits";
     let found = ["slab next to criticality", "moments next to criticality"];
-    let mut of_critical = found.map(|found| Row::stated(found, range)).to_vec();
-    of_critical.push(Row::wrong("infinite slabs, wrong", range));
+    let mut of_critical = found.map(|found| TrialRow::stated(found, range)).to_vec();
+    of_critical.push(TrialRow::wrong("infinite slabs, wrong", range));
     rows.extend(run.fill([4, 64], of_critical, Critical::any, |slab, seen| {
         critical(slab, seen);
         Some(())
@@ -46,10 +46,10 @@ pub fn rows(run: Run) -> Vec<Row> {
 
 parameters! {
     /// A slab in several lights.
-    Slab(range: Number) {
+    Slab(range: NumberStrategy) {
         depth: f64 = range,
         albedo: f64 = share(),
-        lights: Vec<Light> = lights(),
+        lights: Vec<IncidentLight> = lights(),
     }
 }
 
@@ -59,13 +59,13 @@ parameters! {
         depth: f64 = sized(-2.0, 1.0),
         distance: f64 = sized(-7.0, -0.3),
         is_beyond: bool = proptest::bool::weighted(0.2),
-        lights: Vec<Light> = lights(),
+        lights: Vec<IncidentLight> = lights(),
     }
 }
 
 impl Slab {
     /// Compares R, T and collisions in each light.
-    fn compare(&self, found: Vec<Answer>, exact: Vec<[DoubleDouble; 3]>, seen: &mut Seen) {
+    fn compare(&self, found: Vec<EnergyBounds>, exact: Vec<[DoubleDouble; 3]>, seen: &mut Seen) {
         for ((found, exact), light) in found.into_iter().zip(exact).zip(&self.lights) {
             seen.at(format_args!("{light:?}"));
             let found = [found.reflected, found.transmitted, found.score];
@@ -77,10 +77,12 @@ impl Slab {
 }
 
 /// Light from all sides, and from near and far of the normal.
-pub(super) fn lights() -> impl Strategy<Value = Vec<Light>> {
+pub(super) fn lights() -> impl Strategy<Value = Vec<IncidentLight>> {
     let cosine = prop_oneof![1 => sized(-4.0, -1.0), 2 => between(0.05, 1.0)];
     vec(cosine, LIGHTS - 1).prop_map(|cosines| {
-        std::iter::once(Light::Diffuse).chain(cosines.into_iter().map(Light::Collimated)).collect()
+        std::iter::once(IncidentLight::Diffuse)
+            .chain(cosines.into_iter().map(IncidentLight::Collimated))
+            .collect()
     })
 }
 
@@ -130,12 +132,14 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
     let found = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
     let found = seen.found(0, found)?;
     let exact = Ordinates::new(DoubleDouble::from(*depth), near, ORDINATES)?;
-    let all = |(light, found): (&Light, &Answer)| {
+    let all = |(light, found): (&IncidentLight, &EnergyBounds)| {
         let [r, t] = match *light {
-            Light::Collimated(cosine) if *albedo == 0.0 => {
+            IncidentLight::Collimated(cosine) if *albedo == 0.0 => {
                 [DoubleDouble::default(), (-(DoubleDouble::from(*depth) / cosine)).exp()]
             }
-            Light::Diffuse if *albedo == 0.0 => [DoubleDouble::default(), exact.energy(*light)[1]],
+            IncidentLight::Diffuse if *albedo == 0.0 => {
+                [DoubleDouble::default(), exact.energy(*light)[1]]
+            }
             _ => exact.energy(*light),
         };
         let lost = 1.0 - near;
@@ -154,8 +158,9 @@ fn critical(slab: &Critical, seen: &mut Seen) {
     let phase = Phase::Isotropic(Isotropic);
     let slice = |scattered| Kernel { rate: depth, straight: 0.0, scattered, score: 1.0 };
     let resolution = Resolution { first_layer: 1e-10, ..Resolution::FINE };
-    let is_finite =
-        |albedo| slab::energies(&phase, &[Light::Diffuse], &[slice(albedo)], resolution).is_some();
+    let is_finite = |albedo| {
+        slab::energies(&phase, &[IncidentLight::Diffuse], &[slice(albedo)], resolution).is_some()
+    };
     let (mut low, mut high) = (1.0, 2.0);
     while is_finite(high) {
         (low, high) = (high, 2.0 * high);

@@ -13,9 +13,9 @@ use super::prelude::*;
 use super::rods::{critical, leaving, light};
 use media::phase::{Phase, isotropic::Isotropic};
 use theory::colours::Chance;
-use theory::colours::scatterers::{Body, Spectrum, Tracker};
+use theory::colours::scatterers::{BodyEnergies, BodySpectrum, BodyTracker};
 use theory::problems::channels::{Colours, End};
-use theory::problems::slab::{Incidence, Light};
+use theory::problems::slab::{Incidence, IncidentLight};
 use theory::problems::{ChromaticSlab, SpectralRod};
 use theory::ray::spectral;
 use theory::rod::spectral::Rods;
@@ -26,27 +26,27 @@ use theory::{Channel, Moments};
 const ORDINATES: usize = 40;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let range = "2 … 4 channels, 8 trackers, τ = 1e-4 … 10, σ̂/σ_t = 1 … 11";
-    let row = Row::moments("spectral transmittance", range);
+    let row = TrialRow::moments("spectral transmittance", range);
     let mut rows = run.fill([64, 6400], row, Transmittance::any, transmittance);
     let range = "2 … 4 albedos, 3 trackers, τ = 1e-3 … 10";
-    let row = Row::moments("spectral rods", range);
+    let row = TrialRow::moments("spectral rods", range);
     rows.extend(run.fill([64, 6400], row, Coloured::any, rod));
     let range =
         "isotropic, 2 … 4 albedos, 3 trackers, τ = 1e-2 … 5, μ₀ = 0.05 … 1; discrete ordinates";
-    let row = Row::moments("spectral slabs", range);
+    let row = TrialRow::moments("spectral slabs", range);
     rows.extend(run.fill([1, 32], row, Coloured::any, slab));
     let range =
         "isotropic, 2 … 4 media, independent, τ = 1e-2 … 10, μ₀ = 0.05 … 1; discrete ordinates";
-    let row = Row::moments("chromatic slabs", range);
+    let row = TrialRow::moments("chromatic slabs", range);
     rows.extend(run.fill([2, 48], row, Media::any, chromatic));
     rows
 }
 
 /// Tracker of a transmittance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum TrackerKind {
     Independent,
     InTurn,
     Hero,
@@ -60,13 +60,13 @@ parameters! {
     Transmittance {
         channels: Vec<(f64, f64, f64)> =
             vec((sized(-4.0, 1.0), sized(-2.0, 1.0), between(0.1, 1.0)), 2..=4),
-        kind: Kind = any_of(&[
-            Kind::Independent,
-            Kind::InTurn,
-            Kind::Hero,
-            Kind::Mis,
-            Kind::Average,
-            Kind::Maximum,
+        kind: TrackerKind = any_of(&[
+            TrackerKind::Independent,
+            TrackerKind::InTurn,
+            TrackerKind::Hero,
+            TrackerKind::Mis,
+            TrackerKind::Average,
+            TrackerKind::Maximum,
         ]),
         is_delta: bool = proptest::bool::ANY,
     }
@@ -76,9 +76,9 @@ parameters! {
         forward: f64 = between(0.0, 1.0),
         cosine: f64 = between(0.05, 1.0),
         channels: Vec<(f64, f64)> = vec((between(0.02, 1.0), between(0.1, 1.0)), 2..=4),
-        tracker: Tracker = prop_oneof![
-            any_of(&[Tracker::Independent, Tracker::Hero]),
-            between(0.3, 1.0).prop_map(|scatter| Tracker::Tracking { scatter }),
+        tracker: BodyTracker = prop_oneof![
+            any_of(&[BodyTracker::Independent, BodyTracker::Hero]),
+            between(0.3, 1.0).prop_map(|scatter| BodyTracker::Tracking { scatter }),
         ],
     }
     /// Channels with a medium each: depth, albedo and a share of the heroes.
@@ -120,14 +120,14 @@ fn transmittance(case: &Transmittance, seen: &mut Seen) {
     let mut majorants: Vec<f64> =
         channels.iter().map(|(depth, above, _)| depth * (1.0 + above)).collect();
     let tracker = match kind {
-        Kind::Independent => spectral::Tracker::Independent { delta: is_delta },
-        Kind::InTurn => spectral::Tracker::InTurn { delta: is_delta },
-        Kind::Hero => spectral::Tracker::Hero { delta: is_delta },
-        Kind::Mis => spectral::Tracker::Mis { delta: is_delta },
-        Kind::Average => spectral::Tracker::Tracking(Chance::Average),
-        Kind::Maximum => spectral::Tracker::Tracking(Chance::Maximum),
+        TrackerKind::Independent => spectral::Tracker::Independent { delta: is_delta },
+        TrackerKind::InTurn => spectral::Tracker::InTurn { delta: is_delta },
+        TrackerKind::Hero => spectral::Tracker::Hero { delta: is_delta },
+        TrackerKind::Mis => spectral::Tracker::Mis { delta: is_delta },
+        TrackerKind::Average => spectral::Tracker::Tracking(Chance::Average),
+        TrackerKind::Maximum => spectral::Tracker::Tracking(Chance::Maximum),
     };
-    if matches!(kind, Kind::Average | Kind::Maximum) {
+    if matches!(kind, TrackerKind::Average | TrackerKind::Maximum) {
         let largest = majorants.iter().copied().fold(0.0, f64::max);
         majorants.fill(largest);
     }
@@ -148,7 +148,7 @@ struct Walked<'a> {
     depths: &'a [f64],
     majorants: &'a [f64],
     hero: &'a [f64],
-    kind: Kind,
+    kind: TrackerKind,
     is_delta: bool,
 }
 
@@ -173,10 +173,10 @@ impl Walked<'_> {
         };
         let channels = 0..self.hero.len();
         match self.kind {
-            Kind::Independent => Some(alone / power(wide(w), k - 1)),
-            Kind::InTurn => Some(alone),
-            Kind::Hero => Some(channels.map(by_hero).sum()),
-            Kind::Mis => {
+            TrackerKind::Independent => Some(alone / power(wide(w), k - 1)),
+            TrackerKind::InTurn => Some(alone),
+            TrackerKind::Hero => Some(channels.map(by_hero).sum()),
+            TrackerKind::Mis => {
                 // By the number of null collisions; of delta tracking with the density of nulls.
                 let mut terms: Vec<[DoubleDouble; 2]> = channels
                     .map(|hero| {
@@ -202,11 +202,11 @@ impl Walked<'_> {
                 }
                 Some(sum)
             }
-            Kind::Average | Kind::Maximum => {
+            TrackerKind::Average | TrackerKind::Maximum => {
                 let shares = |channel| null(channel) / majorant;
                 let all: Vec<DoubleDouble> = channels.map(shares).collect();
                 let size = |x: &DoubleDouble| x.value();
-                let chance = if self.kind == Kind::Average {
+                let chance = if self.kind == TrackerKind::Average {
                     all.iter().copied().sum::<DoubleDouble>() / all.len() as f64
                 } else {
                     let largest = all.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
@@ -223,12 +223,12 @@ impl Walked<'_> {
 /// Compares a body of coloured scatterers with what leaves bodies of one albedo.
 fn coloured(
     case: &Coloured,
-    (body, colours): (Box<dyn Body + '_>, &Colours),
+    (body, colours): (Box<dyn BodyEnergies + '_>, &Colours),
     leaving: &dyn Fn(DoubleDouble) -> Option<[DoubleDouble; 2]>,
     seen: &mut Seen,
 ) {
     let hero = heroes(case.channels.iter().map(|channel| channel.1));
-    let spectrum = Spectrum::new(body, colours, hero.clone(), case.tracker);
+    let spectrum = BodySpectrum::new(body, colours, hero.clone(), case.tracker);
     let prediction = spectrum.predict();
     for (channel, &(end, own)) in prediction.channels.iter().zip(&colours.seen) {
         seen.at(&channel.name);
@@ -236,10 +236,10 @@ fn coloured(
             |albedo: DoubleDouble| Some(leaving(albedo)?[usize::from(end == End::Transmitted)]);
         let albedo = |channel: usize| DoubleDouble::from(colours.albedos[channel]);
         let moment = |k: usize| match case.tracker {
-            Tracker::Tracking { scatter } => {
+            BodyTracker::Tracking { scatter } => {
                 of(power(albedo(own), k) / power(DoubleDouble::from(scatter), k - 1))
             }
-            Tracker::Hero => (0..hero.len())
+            BodyTracker::Hero => (0..hero.len())
                 .map(|h| Some(of(power(albedo(own), k) / power(albedo(h), k - 1))? * hero[h]))
                 .sum(),
             _ => Some(of(albedo(own))? / power(DoubleDouble::from(hero[own]), k - 1)),
@@ -263,7 +263,11 @@ fn rod(case: &Coloured, seen: &mut Seen) {
 
 fn slab(case: &Coloured, seen: &mut Seen) {
     // Diffuse now and then.
-    let light = if case.cosine < 0.2 { Light::Diffuse } else { Light::Collimated(case.cosine) };
+    let light = if case.cosine < 0.2 {
+        IncidentLight::Diffuse
+    } else {
+        IncidentLight::Collimated(case.cosine)
+    };
     let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.0).collect();
     let depth = case.depth.clamp(1e-2, 5.0);
     let medium = homogeneous(depth, 1.0);
@@ -283,7 +287,11 @@ fn slab(case: &Coloured, seen: &mut Seen) {
 
 /// One channel a draw: `E[X^k] = w^{1−k} R`, or T.
 fn chromatic(case: &Media, seen: &mut Seen) -> Option<()> {
-    let light = if case.cosine < 0.2 { Light::Diffuse } else { Light::Collimated(case.cosine) };
+    let light = if case.cosine < 0.2 {
+        IncidentLight::Diffuse
+    } else {
+        IncidentLight::Collimated(case.cosine)
+    };
     let albedos: Vec<f64> = case.channels.iter().map(|channel| channel.1).collect();
     let hero = heroes(case.channels.iter().map(|channel| channel.2));
     let media: Vec<_> = case.channels.iter().map(|channel| homogeneous(channel.0, 1.0)).collect();
@@ -293,7 +301,7 @@ fn chromatic(case: &Media, seen: &mut Seen) -> Option<()> {
     let flown: Vec<Piecewise> = case.channels.iter().map(flown).collect();
     let meshes: Vec<Mesh> = media.into_iter().map(Mesh::new).collect();
     let joined = meshes.iter().zip(&flown).collect();
-    let found = chromatic::Spectrum::new(&problem, joined, false).independent(&hero);
+    let found = chromatic::SlabSpectrum::new(&problem, joined, false).independent(&hero);
     for (channel, &(end, own)) in found.channels.iter().zip(&problem.colours.seen) {
         seen.at(&channel.name);
         let (depth, albedo, _) = case.channels[own];

@@ -11,7 +11,7 @@ use std::fmt::{Debug, Display};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-use super::row::Row;
+use super::row::TrialRow;
 use numeric::rng::name_hash;
 use numeric::{DoubleDouble, Known};
 use theory::Moments;
@@ -55,18 +55,18 @@ impl Run {
     pub fn fill<S: Strategy, O: Into<Option<()>>>(
         self,
         trials: [u32; 2],
-        rows: impl Into<Vec<Row>>,
+        rows: impl Into<Vec<TrialRow>>,
         parameters: impl Fn() -> S + Sync,
         trial: impl Fn(&S::Value, &mut Seen) -> O + Sync,
-    ) -> Vec<Row> {
-        let empty: Vec<Row> = rows.into();
+    ) -> Vec<TrialRow> {
+        let empty: Vec<TrialRow> = rows.into();
         let name = name_hash(&format!("stress|{}|{}", empty[0].quantity, empty[0].range));
         let tree = |number: u32| {
             let words = [self.seed, name, number.into(), 0].map(u64::to_le_bytes);
             let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &words.concat());
             parameters().new_tree(&mut TestRunner::new_with_rng(Config::default(), rng)).ok()
         };
-        let try_out = |number: u32, parameters: &S::Value, rows: &mut [Row]| {
+        let try_out = |number: u32, parameters: &S::Value, rows: &mut [TrialRow]| {
             let mut seen = Seen { trial: number, label: String::new(), parameters, rows };
             if trial(parameters, &mut seen).into().is_none() {
                 (0..seen.rows.len()).for_each(|row| seen.skip(row));
@@ -125,7 +125,7 @@ pub struct Seen<'a> {
     /// Name of the value, if a trial has several.
     label: String,
     parameters: &'a dyn Debug,
-    rows: &'a mut [Row],
+    rows: &'a mut [TrialRow],
 }
 
 impl Seen<'_> {

@@ -8,27 +8,27 @@ use gate::stats::{anderson_darling, binomial, chi_square, normal};
 use theory::CountDistribution;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
+pub fn rows(run: Run) -> Vec<TrialRow> {
     let level = || prop_oneof![sized(-300.0, -0.4), sized(-13.0, -0.4)];
-    let row = Row::relative("normal quantile", "levels 1e-300 … 0.5", 1e-9);
+    let row = TrialRow::relative("normal quantile", "levels 1e-300 … 0.5", 1e-9);
     let mut rows = run.fill([256, 10_240], [row], level, quantile);
-    let row = Row::relative("erf and erfc", "0 … 26", 4.0 * f64::EPSILON);
+    let row = TrialRow::relative("erf and erfc", "0 … 26", 4.0 * f64::EPSILON);
     rows.extend(run.fill([256, 10_240], [row], || sized(-8.0, 1.41), error_function));
     let range = "2 … 400 degrees, levels down to 1e-200";
-    let row = Row::relative("χ² tail, closed form", range, 1e-10);
+    let row = TrialRow::relative("χ² tail, closed form", range, 1e-10);
     rows.extend(run.fill([64, 2560], [row], EvenDegrees::any, even_degrees));
     let range = "100 … 1e9 degrees, levels 1e-12 … 0.3, both tails";
-    let row = Row::relative("χ² tails, many degrees", range, 1e-8);
+    let row = TrialRow::relative("χ² tails, many degrees", range, 1e-8);
     let degrees = || (sized(2.0, 9.0), sign(), between(0.5, 7.0));
     rows.extend(run.fill([32, 1280], [row], degrees, many_degrees));
     let range = "1e4 … 1e9 trials, levels up to 1 − 1e-12";
-    let row = Row::relative("Clopper–Pearson limits", range, 1e-8);
+    let row = TrialRow::relative("Clopper–Pearson limits", range, 1e-8);
     rows.extend(run.fill([32, 656], [row], Successes::any, binomial_ends));
-    let row = Row::relative("Poisson probabilities", "means 1e-3 … 2000, P > 1e-18", 1e-12);
+    let row = TrialRow::relative("Poisson probabilities", "means 1e-3 … 2000, P > 1e-18", 1e-12);
     rows.extend(run.fill([16, 336], [row], || sized(-3.0, 3.3), poisson));
-    let row = Row::relative("Catoni's sums", "4096 draws of 1e-12 … 1e150, both signs", 1e-13);
+    let row = TrialRow::relative("Catoni's sums", "4096 draws of 1e-12 … 1e150, both signs", 1e-13);
     rows.extend(run.fill([32, 656], [row], catoni_draws, catoni));
-    let row = Row::relative("Anderson–Darling tail", "A² = 0.1 … 700, p = 1 … 1e-300", 1e-11);
+    let row = TrialRow::relative("Anderson–Darling tail", "A² = 0.1 … 700, p = 1 … 1e-300", 1e-11);
     let square = || prop_oneof![sized(-1.0, 1.6), sized(1.6, 2.84)];
     rows.extend(run.fill([16, 176], [row], square, anderson_darling));
     rows

@@ -12,18 +12,18 @@
 //! ```
 
 use super::equations::{binomial, power};
-use super::nodes::{Line, Solution};
+use super::nodes::{PanelLine, Solution};
 use super::prelude::*;
 use super::shared_walk::{ORDERS, degree, of_mean};
 use theory::problems::{Problem, SingleScattering};
 use theory::single::predict::DENSITY;
 use theory::single::{
-    self, Camera, CameraTracking, Collisions, Node, Scene, TechniqueMoments, Tracking, walks,
+    self, Camera, CameraTracking, Collisions, RayNode, RayScene, TechniqueMoments, Tracking, walks,
 };
 
 /// Technique that samples points of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Technique {
+pub enum PointTechnique {
     /// Scores at every collision of a walk.
     AtCollisions,
     /// Score at one of all collisions of a walk.
@@ -57,14 +57,14 @@ impl Estimator<'_> {
     }
 
     /// Returns the prediction of theory.
-    pub fn found(&self, technique: Technique) -> TechniqueMoments {
+    pub fn found(&self, technique: PointTechnique) -> TechniqueMoments {
         let (problem, [sampling, control]) = (self.problem, self.walk);
         let medium = problem.medium();
         let (mesh, support) = (Mesh::new(medium.clone()), medium.support());
         let flown = Piecewise::constant(sampling, support);
         let along = match technique {
-            Technique::ByAngle(along) | Technique::ByDepth(along) => along,
-            Technique::Delta => CameraTracking::Exact,
+            PointTechnique::ByAngle(along) | PointTechnique::ByDepth(along) => along,
+            PointTechnique::Delta => CameraTracking::Exact,
             _ => CameraTracking::Ratio,
         };
         let control = if along == CameraTracking::Ratio && control != 0.0 {
@@ -73,26 +73,26 @@ impl Estimator<'_> {
             Control::None
         };
         let camera = Camera::new(&mesh, &flown, &control, along);
-        let scene = &Scene::new(problem, camera, self.tracking);
-        let of = |density: &dyn Fn(&Node) -> f64, blur: &dyn Fn(&Node) -> f64| {
-            let gain = |node: &Node| node.extinction * node.source / density(node);
+        let scene = &RayScene::new(problem, camera, self.tracking);
+        let of = |density: &dyn Fn(&RayNode) -> f64, blur: &dyn Fn(&RayNode) -> f64| {
+            let gain = |node: &RayNode| node.extinction * node.source / density(node);
             let (found, weighted) = (None, None);
-            let technique = single::Technique { density, gain: &gain, blur, found, weighted };
+            let technique = single::ScoredDensity { density, gain: &gain, blur, found, weighted };
             TechniqueMoments::of(scene, &technique, Vec::new())
         };
-        let by_angle = |node: &Node| problem.equiangular_density_beyond(node.along);
+        let by_angle = |node: &RayNode| problem.equiangular_density_beyond(node.along);
         match technique {
-            Technique::AtCollisions => walks::at_collisions(scene),
-            Technique::Resampled => walks::resampled(scene, self.tracking == Tracking::Exact),
-            Technique::SharedWalk => walks::at_points(scene, self.count, &by_angle),
-            Technique::ByAngle(_) => of(&by_angle, &|_| DENSITY),
-            Technique::ByDepth(_) => {
+            PointTechnique::AtCollisions => walks::at_collisions(scene),
+            PointTechnique::Resampled => walks::resampled(scene, self.tracking == Tracking::Exact),
+            PointTechnique::SharedWalk => walks::at_points(scene, self.count, &by_angle),
+            PointTechnique::ByAngle(_) => of(&by_angle, &|_| DENSITY),
+            PointTechnique::ByDepth(_) => {
                 let rate = self.rate();
                 let found = -(-rate * support.length()).exp_m1();
-                let density = |node: &Node| rate * (-rate * node.s).exp() / found;
+                let density = |node: &RayNode| rate * (-rate * node.s).exp() / found;
                 of(&density, &|node| DENSITY + f64::EPSILON * rate * node.s)
             }
-            Technique::Delta => {
+            PointTechnique::Delta => {
                 Collisions { medium, sampling: &flown, scatters: 1.0 }.points(scene)
             }
         }
@@ -100,7 +100,7 @@ impl Estimator<'_> {
 }
 
 /// A place of a ray.
-pub struct Place {
+pub struct RayPlace {
     /// σ_t.
     pub extinction: DoubleDouble,
     /// `σ_t S`.
@@ -113,7 +113,7 @@ pub struct Place {
 
 /// A node of a ray.
 struct At {
-    place: Place,
+    place: RayPlace,
     /// Density of points by angle.
     by_angle: DoubleDouble,
     /// Factor of a weight at a collision.
@@ -125,14 +125,14 @@ struct At {
 /// A ray by nodes.
 pub struct Ray<'a> {
     estimator: &'a Estimator<'a>,
-    line: Line,
+    line: PanelLine,
     at: Vec<At>,
     sampling: DoubleDouble,
     control: DoubleDouble,
 }
 
 /// `E[X], …, E[X⁴]`, and the mean lookups if they are known.
-pub type Exact = ([DoubleDouble; 4], Option<DoubleDouble>);
+pub type ExactMoments = ([DoubleDouble; 4], Option<DoubleDouble>);
 
 impl<'a> Ray<'a> {
     /// Cuts a ray at ends and further, for a largest rate of what is lost along it.
@@ -140,16 +140,16 @@ impl<'a> Ray<'a> {
         estimator: &'a Estimator,
         ends: &[f64],
         rate: f64,
-        place: &dyn Fn(DoubleDouble) -> Place,
+        place: &dyn Fn(DoubleDouble) -> RayPlace,
     ) -> Self {
         let ends: Vec<DoubleDouble> = ends.iter().copied().map(DoubleDouble::from).collect();
-        let line = Line::new(&ends, |_| rate);
+        let line = PanelLine::new(&ends, |_| rate);
         let distance = DoubleDouble::from(estimator.problem.distance());
         let foot = estimator.problem.foot();
         let by_angle = line.values(|_, s| 1.0 / (distance * distance + (s - foot).powi(2)));
         let whole = line.one_way(|_| DoubleDouble::default(), |i| by_angle[i]).begin;
         let [sampling, control] = estimator.walk.map(DoubleDouble::from);
-        let at = |(place, by_angle): (Place, DoubleDouble)| At {
+        let at = |(place, by_angle): (RayPlace, DoubleDouble)| At {
             by_angle: by_angle / whole,
             weight: 1.0 - (place.extinction - control) / sampling,
             gain: place.scattered / sampling,
@@ -166,16 +166,16 @@ impl<'a> Ray<'a> {
     }
 
     /// Moments and lookups of a technique.
-    pub fn exact(&self, technique: Technique) -> Exact {
+    pub fn exact(&self, technique: PointTechnique) -> ExactMoments {
         match technique {
-            Technique::AtCollisions => self.at_collisions(),
-            Technique::Resampled => self.resampled(),
-            Technique::SharedWalk => self.shared_walk(),
-            Technique::Delta => self.delta(),
-            Technique::ByAngle(along) => {
+            PointTechnique::AtCollisions => self.at_collisions(),
+            PointTechnique::Resampled => self.resampled(),
+            PointTechnique::SharedWalk => self.shared_walk(),
+            PointTechnique::Delta => self.delta(),
+            PointTechnique::ByAngle(along) => {
                 self.at_point(along, &self.at.iter().map(|at| at.by_angle).collect::<Vec<_>>())
             }
-            Technique::ByDepth(along) => {
+            PointTechnique::ByDepth(along) => {
                 let rate = DoubleDouble::from(self.estimator.rate());
                 let all = -(-rate * self.length()).exp_m1();
                 self.at_point(along, &self.line.values(|_, s| rate * (-(rate * s)).exp() / all))
@@ -222,7 +222,7 @@ impl<'a> Ray<'a> {
         self.sampling * self.length()
     }
 
-    fn at_collisions(&self) -> Exact {
+    fn at_collisions(&self) -> ExactMoments {
         let mut known: Vec<Solution<DoubleDouble>> = Vec::new();
         for k in 1..5 {
             let source = |at: &At, i: usize| {
@@ -238,7 +238,7 @@ impl<'a> Ray<'a> {
         (std::array::from_fn(|k| known[k].begin), cast.map(|cast| self.flown() + cast))
     }
 
-    fn resampled(&self) -> Exact {
+    fn resampled(&self) -> ExactMoments {
         // n of j collisions score.
         let ways = |at: &At, j: usize, n: usize| {
             let kept = power(at.weight.abs(), j - n);
@@ -268,7 +268,7 @@ impl<'a> Ray<'a> {
         ([1, 2, 3, 4].map(moment), is_free.then(|| self.flown()))
     }
 
-    fn shared_walk(&self) -> Exact {
+    fn shared_walk(&self) -> ExactMoments {
         let mut known: Vec<Solution<DoubleDouble>> = Vec::new();
         for order in ORDERS {
             let source = |at: &At, i: usize| {
@@ -289,7 +289,7 @@ impl<'a> Ray<'a> {
         (of_mean(count, |order| known[order].begin), lookups)
     }
 
-    fn delta(&self) -> Exact {
+    fn delta(&self) -> ExactMoments {
         let rate = |at: &At| at.place.extinction;
         let moment = |k| {
             let source = |at: &At, _| scored(&at.place, at.place.extinction, k);
@@ -300,7 +300,7 @@ impl<'a> Ray<'a> {
         ([1, 2, 3, 4].map(moment), cast.map(|cast| walked + cast))
     }
 
-    fn at_point(&self, along: CameraTracking, density: &[DoubleDouble]) -> Exact {
+    fn at_point(&self, along: CameraTracking, density: &[DoubleDouble]) -> ExactMoments {
         let moment = |k: usize| {
             let rate = |at: &At| match along {
                 CameraTracking::Exact => k as f64 * at.place.extinction,
@@ -329,6 +329,6 @@ fn before(known: &[Solution<DoubleDouble>], j: usize, node: usize) -> DoubleDoub
 }
 
 /// `p (σ_t S/p)^k e^{−B_k}`.
-fn scored(place: &Place, density: DoubleDouble, k: usize) -> DoubleDouble {
+fn scored(place: &RayPlace, density: DoubleDouble, k: usize) -> DoubleDouble {
     density * power(place.scattered / density, k) * place.shadow[k]
 }

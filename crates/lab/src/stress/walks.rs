@@ -21,8 +21,8 @@ use super::prelude::*;
 use super::rods::{lookups, moments_of};
 use super::slabs::{LIGHTS, henyey_greenstein, lights, phase};
 use media::phase::{Phase, isotropic::Isotropic};
-use theory::problems::slab::{Incidence, Light};
-use theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
+use theory::problems::slab::{Incidence, IncidentLight};
+use theory::slab::{self, Energy, EnergyBounds, Existence, Piece, Pieces, Resolution, SlabWalk};
 use theory::{CountDistribution, Kernel, ParticleRule};
 
 /// Directions of the ordinates.
@@ -42,19 +42,19 @@ const WALKS: &str = "walks in a slab";
 const FAINT: f64 = 1e-9;
 
 /// All rows.
-pub fn rows(run: Run) -> Vec<Row> {
-    let moments = |range| Row::moments(WALKS, range).to_vec();
+pub fn rows(run: Run) -> Vec<TrialRow> {
+    let moments = |range| TrialRow::moments(WALKS, range).to_vec();
     let with_lookups = |range| {
         let mut rows = moments(range);
-        rows.push(Row::stated("lookups of walks in a slab", range));
+        rows.push(TrialRow::stated("lookups of walks in a slab", range));
         rows
     };
     let range = "isotropic, 3 rules, r = 0.1 … 3, τ = 1e-3 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
     let mut of_even = with_lookups(range);
-    of_even.push(Row::wrong("diverging variances in slabs, wrong", range));
+    of_even.push(TrialRow::wrong("diverging variances in slabs, wrong", range));
     let mut rows = run.fill([4, 64], of_even, Even::any, even);
     let range = "isotropic, 1 − a = 1e-7 … 0.5, 3 rules, r = 0.1 … 1, τ = 1e-2 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
-    let of_lookups = Row::moments("lookups of walks in a slab, next to criticality", range);
+    let of_lookups = TrialRow::moments("lookups of walks in a slab, next to criticality", range);
     rows.extend(run.fill([2, 32], of_lookups, White::any, white));
     let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
     rows.extend(run.fill([2, 64], with_lookups(range), Layers::any, finer));
@@ -73,7 +73,7 @@ parameters! {
         albedo: f64 = albedo(),
         ratio: f64 = sized(-1.0, 0.5),
         kind: usize = 0..3_usize,
-        lights: Vec<Light> = lights(),
+        lights: Vec<IncidentLight> = lights(),
     }
     /// A walk that ends rarely or never before it leaves: one ratio, isotropic scattering.
     White {
@@ -81,7 +81,7 @@ parameters! {
         absorbed: f64 = sized(-7.0, -0.3),
         ratio: f64 = sized(-1.0, 0.0),
         kind: usize = 0..3_usize,
-        lights: Vec<Light> = lights(),
+        lights: Vec<IncidentLight> = lights(),
     }
     /// Layers of other ratios, any phase function.
     Layers {
@@ -90,7 +90,7 @@ parameters! {
         ratios: Vec<f64> = vec(sized(-1.0, 0.3), 1..=3),
         kind: usize = 0..3_usize,
         phase: Phase = phase(),
-        lights: Vec<Light> = lights(),
+        lights: Vec<IncidentLight> = lights(),
     }
     /// Straight pieces of r, isotropic scattering.
     Graded {
@@ -100,7 +100,7 @@ parameters! {
         collisions: f64 = sized(-2.0, 0.7),
         values: Vec<f64> = vec(between(0.0, 1.0), 2..=4),
         largest: usize = 0..4_usize,
-        lights: Vec<Light> = alike(),
+        lights: Vec<IncidentLight> = alike(),
     }
     /// r that rises or falls, any phase function.
     Ramp {
@@ -112,7 +112,7 @@ parameters! {
             1 => Just(Phase::Isotropic(Isotropic)),
             3 => between(-0.6, 0.6).prop_map(henyey_greenstein),
         ],
-        lights: Vec<Light> = lights(),
+        lights: Vec<IncidentLight> = lights(),
     }
 }
 
@@ -145,14 +145,15 @@ struct Exact {
 }
 
 /// Compares a walk in all lights.
-fn compare(seen: &mut Seen, walk: &Walk, lights: &[Light], exact: &Exact) {
+fn compare(seen: &mut Seen, walk: &SlabWalk, lights: &[IncidentLight], exact: &Exact) {
     let known = |x: DoubleDouble| Known::new(x.value(), f64::EPSILON * x.value());
     let answer = |both: &[DoubleDouble; 2]| {
         let [reflected, transmitted] = both.map(known);
-        Answer { reflected, transmitted, score: Known::exact(0.0) }
+        EnergyBounds { reflected, transmitted, score: Known::exact(0.0) }
     };
     let first = exact.leaving.first();
-    let truths: Vec<Answer> = first.map_or_else(Vec::new, |all| all.iter().map(answer).collect());
+    let truths: Vec<EnergyBounds> =
+        first.map_or_else(Vec::new, |all| all.iter().map(answer).collect());
     let all = walk.predict_all(lights, &truths);
     for (i, (light, found)) in lights.iter().zip(all).enumerate() {
         seen.at(format_args!("{light:?}"));
@@ -183,13 +184,21 @@ fn walk(
     pieces: Pieces,
     most: f64,
     depth: f64,
-) -> Walk {
-    let incidence = Incidence { light: Light::Diffuse, phase };
-    Walk { incidence, albedo, rule, pieces, largest_ratio: most, depth, with_distributions: false }
+) -> SlabWalk {
+    let incidence = Incidence { light: IncidentLight::Diffuse, phase };
+    SlabWalk {
+        incidence,
+        albedo,
+        rule,
+        pieces,
+        largest_ratio: most,
+        depth,
+        with_distributions: false,
+    }
 }
 
 /// The layers of a walk's k-th moments.
-fn slices(cut: &[Piece], walk: &Walk, k: u32) -> Vec<Kernel> {
+fn slices(cut: &[Piece], walk: &SlabWalk, k: u32) -> Vec<Kernel> {
     let slice = |piece: &Piece| {
         let [mut straight, mut scattered] = [0.0; 2];
         for &[share, ratio] in &piece.ratios {
@@ -234,7 +243,7 @@ fn even(parameters: &Even, seen: &mut Seen) {
     let ends = 1.0 - q - s;
     let ends = if ends.high.abs() < 1e-13 { (1.0 - q) * WHITE } else { ends };
     let collisions = of_power(0, 1.0).map_or_else(Vec::new, |slab| {
-        let left = |&light: &Light| slab.energy(light).into_iter().sum::<DoubleDouble>();
+        let left = |&light: &IncidentLight| slab.energy(light).into_iter().sum::<DoubleDouble>();
         lights.iter().map(|light| (1.0 - left(light)) / ends).collect()
     });
     compare(seen, &walk, lights, &Exact { leaving, collisions: Some(collisions) });
@@ -246,7 +255,8 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
     let (rule, flown) = (rule(kind, ratio), depth / ratio);
     let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
     let walk = walk(Phase::Isotropic(Isotropic), (1.0 - absorbed, rule), pieces, ratio, depth);
-    let found = seen.found(0, Walk { with_distributions: true, ..walk.clone() }.lookups(lights))?;
+    let found =
+        seen.found(0, SlabWalk { with_distributions: true, ..walk.clone() }.lookups(lights))?;
     let laws: Vec<CountDistribution> =
         found.into_iter().map(CountDistribution::of_factorial).collect();
     let scale = laws.iter().map(|law| 1.0 + law.variance / law.mean).fold(0.0, f64::max);
@@ -261,7 +271,7 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
         let (lost, scattered) = (1.0 - z * q, z * s);
         let slab = Ordinates::new(DoubleDouble::from(flown) * lost, scattered / lost, ORDINATES)?;
         let ended = z * (1.0 - q - s) / (lost - scattered);
-        let of_light = |&light: &Light| {
+        let of_light = |&light: &IncidentLight| {
             let left: DoubleDouble = slab.energy(light).into_iter().sum();
             left + (1.0 - left) * ended
         };
@@ -349,15 +359,15 @@ fn ramps(parameters: &Ramp, seen: &mut Seen) {
 }
 
 /// Lights that graze, or none of them: layers are thinner for all where one does.
-fn alike() -> impl Strategy<Value = Vec<Light>> {
+fn alike() -> impl Strategy<Value = Vec<IncidentLight>> {
     let all = |cosine| vec(cosine, LIGHTS);
     (proptest::bool::ANY, all(sized(-4.0, -1.0)), all(between(0.1, 1.0))).prop_map(
         |(all_graze, grazing, steep)| {
-            let diffuse = (!all_graze).then_some(Light::Diffuse);
+            let diffuse = (!all_graze).then_some(IncidentLight::Diffuse);
             let cosines = if all_graze { grazing } else { steep };
             diffuse
                 .into_iter()
-                .chain(cosines.into_iter().map(Light::Collimated))
+                .chain(cosines.into_iter().map(IncidentLight::Collimated))
                 .take(LIGHTS)
                 .collect()
         },

@@ -23,7 +23,7 @@ pub(super) enum Form<'a> {
 
 /// Explains a name that is not among those of a choice: the message and the cure; `None` without a better explanation
 /// than the list of names.
-pub type Explain<'a> = &'a dyn Fn(&str) -> Option<[String; 2]>;
+pub type Explanation<'a> = &'a dyn Fn(&str) -> Option<[String; 2]>;
 
 impl<'a> Settings<'a> {
     /// A required word, one of `words`.
@@ -136,7 +136,7 @@ impl<'a> Settings<'a> {
     pub fn choice_explained(
         &self,
         names: &[String],
-        explain: Explain,
+        explain: Explanation,
     ) -> Option<(usize, Settings<'a>)> {
         let list = quoted(names);
         let position = |name: &str, span: &Range<usize>| {
@@ -187,7 +187,7 @@ impl<'a> Settings<'a> {
         &self,
         key: &'static str,
         names: &[String],
-        explain: Explain,
+        explain: Explanation,
     ) -> Option<(usize, Settings<'a>)> {
         let wanted = format!("one of {}", quoted(names));
         self.naming(key, &wanted)?.choice_explained(names, explain)

@@ -4,29 +4,29 @@ use exr::prelude::f16;
 
 /// A number's type, width and byte order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Number {
-    kind: Kind,
+pub struct NumberType {
+    kind: NumberKind,
     width: usize,
     is_big: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum NumberKind {
     Float,
     Signed,
     Unsigned,
 }
 
-impl Number {
+impl NumberType {
     /// The number of an element type of `NumPy`, such as `<f4`, `>i2` or `|u1`; booleans are 0 and 1.
     pub fn named(name: &str) -> Option<Self> {
         let mut letters = name.chars();
         let order = letters.next()?;
         let (kind, width) = (letters.next()?, letters.as_str().parse::<usize>().ok()?);
         let kind = match (kind, width) {
-            ('f', 2 | 4 | 8) => Kind::Float,
-            ('i', 1 | 2 | 4 | 8) => Kind::Signed,
-            ('u', 1 | 2 | 4 | 8) | ('b', 1) => Kind::Unsigned,
+            ('f', 2 | 4 | 8) => NumberKind::Float,
+            ('i', 1 | 2 | 4 | 8) => NumberKind::Signed,
+            ('u', 1 | 2 | 4 | 8) | ('b', 1) => NumberKind::Unsigned,
             _ => return None,
         };
         match order {
@@ -39,12 +39,12 @@ impl Number {
 
     /// The number of an element type that is a float of 4 or 8 bytes.
     pub fn float(name: &str) -> Option<Self> {
-        Self::named(name).filter(|number| number.kind == Kind::Float && number.width > 2)
+        Self::named(name).filter(|number| number.kind == NumberKind::Float && number.width > 2)
     }
 
     /// A float of a width, with its low or its high byte first.
     pub const fn of_width(width: usize, is_big: bool) -> Self {
-        Self { kind: Kind::Float, width, is_big }
+        Self { kind: NumberKind::Float, width, is_big }
     }
 
     /// Bytes.
@@ -64,14 +64,16 @@ impl Number {
         let doubles = bytes.as_chunks().0.iter();
         let singles = bytes.as_chunks().0.iter();
         match (self.kind, self.width, self.is_big) {
-            (Kind::Float, 8, false) => {
+            (NumberKind::Float, 8, false) => {
                 numbers.extend(doubles.map(|&word| f64::from_le_bytes(word)));
             }
-            (Kind::Float, 8, true) => numbers.extend(doubles.map(|&word| f64::from_be_bytes(word))),
-            (Kind::Float, 4, false) => {
+            (NumberKind::Float, 8, true) => {
+                numbers.extend(doubles.map(|&word| f64::from_be_bytes(word)));
+            }
+            (NumberKind::Float, 4, false) => {
                 numbers.extend(singles.map(|&word| f64::from(f32::from_le_bytes(word))));
             }
-            (Kind::Float, 4, true) => {
+            (NumberKind::Float, 4, true) => {
                 numbers.extend(singles.map(|&word| f64::from(f32::from_be_bytes(word))));
             }
             _ => numbers.extend(bytes.chunks_exact(self.width).map(|word| self.one(word))),
@@ -88,9 +90,9 @@ impl Number {
         let unused = 64 - 8 * u32::try_from(self.width).unwrap_or(8);
         #[expect(clippy::cast_possible_truncation)] // wider floats are converted before
         match self.kind {
-            Kind::Float => f16::from_bits(bits as u16).to_f64(),
-            Kind::Signed => ((bits << unused).cast_signed() >> unused) as f64,
-            Kind::Unsigned => bits as f64,
+            NumberKind::Float => f16::from_bits(bits as u16).to_f64(),
+            NumberKind::Signed => ((bits << unused).cast_signed() >> unused) as f64,
+            NumberKind::Unsigned => bits as f64,
         }
     }
 }
@@ -118,13 +120,13 @@ mod tests {
             ("<i8", &i64::MIN.to_le_bytes(), -9_223_372_036_854_775_808.0),
             ("<u8", &u64::MAX.to_le_bytes(), 18_446_744_073_709_551_615.0),
         ] {
-            let number = Number::named(name).expect(name);
+            let number = NumberType::named(name).expect(name);
             assert_eq!((number.width(), number.all(bytes)), (bytes.len(), vec![value]), "{name}");
         }
         for name in
             ["", "<", "<f", "<f3", "<c16", "|f4", "<U1", "f4", "<f16", "[('a', '<f8')]", "|O"]
         {
-            assert_eq!(Number::named(name), None, "{name}");
+            assert_eq!(NumberType::named(name), None, "{name}");
         }
     }
 }

@@ -10,7 +10,7 @@
 //! Source: P. Debevec, *PFM Portable `FloatMap` Image Format*.
 
 use super::Pixels;
-use super::number::Number;
+use super::number::NumberType;
 
 /// The bytes of an image of one or three channels; its rows are given from the top.
 pub fn write([columns, rows]: [usize; 2], channels: usize, image: &[f64]) -> Vec<u8> {
@@ -62,7 +62,7 @@ pub fn read(bytes: &[u8]) -> Result<Pixels, String> {
             "{found} bytes follow its header, not 4 for each of {channels} × {columns} × {rows} values"
         ));
     }
-    let word = Number::of_width(4, scale > 0.0);
+    let word = NumberType::of_width(4, scale > 0.0);
     let mut numbers = Vec::with_capacity(values.len() / 4);
     for row in values.chunks_exact(4 * columns * channels).rev() {
         word.convert(row, &mut numbers);

@@ -12,7 +12,7 @@
 //! version 0.6 (2014), plugin `gridvolume`.
 
 use super::bytes::Bytes;
-use super::number::Number;
+use super::number::NumberType;
 use super::{Unreadable, damaged, wrong};
 
 /// Bytes before the samples.
@@ -39,8 +39,8 @@ impl Encoding {
         }
     }
 
-    fn number(self) -> Option<Number> {
-        Number::named(match self {
+    fn number(self) -> Option<NumberType> {
+        NumberType::named(match self {
             Self::Single => "<f4",
             Self::Half => "<f2",
             Self::Byte => "|u1",
@@ -99,7 +99,7 @@ impl<'a> Vol<'a> {
         let size = [x, y, z];
         let corners = [header.floats()?, header.floats()?].map(|corner| corner.map(f64::from));
         let samples = header.rest();
-        let width = encoding.number().map_or(0, Number::width) as u64;
+        let width = encoding.number().map_or(0, NumberType::width) as u64;
         let mut factors = size.into_iter().chain([channels]);
         let wanted = factors.try_fold(width, u64::checked_mul);
         if wanted.is_none_or(|wanted| wanted != samples.len() as u64) {

@@ -13,7 +13,7 @@
 
 use super::search::Search;
 use crate::{Medium, Profile};
-use numeric::{Lane, Row, Span, roots};
+use numeric::{CacheRow, Lane, Span, roots};
 
 /// Number of intervals of a table.
 const STRETCHES: u32 = 2048;
@@ -23,11 +23,11 @@ const GRAIN: f64 = 1e-15;
 /// Distances at which given optical depths of a medium are reached.
 pub struct Inverse {
     medium: Medium,
-    table: Option<Table>,
+    table: Option<InverseTable>,
 }
 
 impl Inverse {
-    pub(crate) fn new(medium: Medium, table: Option<Table>) -> Self {
+    pub(crate) fn new(medium: Medium, table: Option<InverseTable>) -> Self {
         Self { medium, table }
     }
 
@@ -39,7 +39,7 @@ impl Inverse {
 }
 
 /// Optical depths at equal distances.
-pub(crate) struct Table {
+pub(crate) struct InverseTable {
     span: Span,
     /// Optical depth at the end.
     whole: f64,
@@ -47,10 +47,10 @@ pub(crate) struct Table {
     search: Search,
     /// For each interval: the depth at its beginning and one over its own depth; its beginning, its length, and the
     /// relative excess of the inverse's slope over its chord at both ends.
-    stretches: Vec<Row>,
+    stretches: Vec<CacheRow>,
 }
 
-impl Table {
+impl InverseTable {
     /// The table of a field on a span that is not empty.
     pub(crate) fn of(field: &Profile, span: Span) -> Self {
         let share = |j: u32| f64::from(j) / f64::from(STRETCHES);
@@ -66,7 +66,7 @@ impl Table {
             let (length, depth) = (at[1] - at[0], depths[1] - depths[0]);
             let steeper = |s: f64| depth / (length * field.at(s)) - 1.0;
             let (first, last) = (steeper(at[0]), steeper(at[1]));
-            Row([depths[0], 1.0 / depth, at[0], length, first, last, 0.0, 0.0])
+            CacheRow([depths[0], 1.0 / depth, at[0], length, first, last, 0.0, 0.0])
         };
         let stretches = at.windows(2).zip(depths.windows(2)).map(stretch).collect();
         Self { span, whole: highest, search: Search::new(&depths), stretches }

@@ -140,9 +140,9 @@ mod tests {
     }
 
     /// A flight of one particle.
-    struct Alone<'a>(MajorantView<'a>, Flights<f64>);
+    struct SingleFlight<'a>(MajorantView<'a>, Flights<f64>);
 
-    impl<'a> Alone<'a> {
+    impl<'a> SingleFlight<'a> {
         fn enter(grid: &'a Majorants, origin: [f64; 3], direction: [f64; 3]) -> Self {
             let (ground, mut flight) = (MajorantView::new(grid, None), Flights::new(0.0));
             (flight.origin, flight.direction) = (origin, direction);
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn a_flight_spends_its_depth_cell_by_cell() {
         let grid = grid();
-        let mut flight = Alone::enter(&grid, [0.0, 0.5, 0.5], [1.0, 0.0, 0.0]);
+        let mut flight = SingleFlight::enter(&grid, [0.0, 0.5, 0.5], [1.0, 0.0, 0.0]);
         assert_eq!(flight.fly(0.25), Some(0.5));
         assert_eq!(flight.1.t, 0.5);
         // 0.25 up to the plane, 0.5 in the second cell: a quarter of it.
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(grid.content(), Some(2.5));
         assert_eq!(flight.fly(1.6), None);
         assert_eq!(flight.1.t, 2.0);
-        let mut back = Alone::enter(&grid, [2.0, 0.5, 0.5], [-1.0, 0.0, 0.0]);
+        let mut back = SingleFlight::enter(&grid, [2.0, 0.5, 0.5], [-1.0, 0.0, 0.0]);
         assert_eq!(back.fly(2.25), Some(0.5));
         assert_eq!(back.1.t, 1.5);
     }
@@ -183,10 +183,10 @@ mod tests {
         let mut grid = grid();
         grid.values[0] = 0.0;
         assert_eq!(grid.empty_share(), 0.5);
-        let mut flight = Alone::enter(&grid, [0.0, 0.5, 0.5], [1.0, 0.0, 0.0]);
+        let mut flight = SingleFlight::enter(&grid, [0.0, 0.5, 0.5], [1.0, 0.0, 0.0]);
         assert_eq!(flight.fly(1.0), Some(2.0));
         assert_eq!(flight.1.t, 1.5);
-        let mut across = Alone::enter(&grid, [0.5, 0.0, 0.5], [0.0, 1.0, 0.0]);
+        let mut across = SingleFlight::enter(&grid, [0.5, 0.0, 0.5], [0.0, 1.0, 0.0]);
         assert_eq!(across.fly(1e-9), None);
     }
 
@@ -195,7 +195,7 @@ mod tests {
         let volume: &Volume = &Eq21;
         let cells = Majorants::grid([7, 5, 9], 1.0, volume).expect("bounded");
         let direction = Point([0.3, -0.5, 0.7]).normalised().expect("a direction");
-        let mut flight = Alone::enter(&cells, [1.0, 2.0, 3.0], direction.0);
+        let mut flight = SingleFlight::enter(&cells, [1.0, 2.0, 3.0], direction.0);
         let mut seen = 0;
         while let Some(here) = flight.fly(0.01) {
             assert!(volume.extinction_at(flight.place()) <= here);

@@ -14,7 +14,7 @@ pub use cursor::Cursor;
 pub use flight::{BothWays, FlightOverPieces, FlightWithGaps, PackedFlight};
 pub use gaps::ConstantWithGaps;
 pub use inverse::Inverse;
-pub(super) use inverse::Table;
+pub(super) use inverse::InverseTable;
 pub use majorants::Majorants;
 pub use majorants::flights::{Flights, Flown, MajorantView, Reach};
 pub use piecewise::Piecewise;

@@ -3,7 +3,7 @@
 use super::search::Search;
 use super::{ConstantWithGaps, FlightOverPieces, PackedFlight};
 use crate::{Extinction, Facts, OpticalDepth};
-use numeric::{Known, Lane, Row, Span, sum::Sum};
+use numeric::{CacheRow, Known, Lane, Span, sum::Sum};
 
 /// A field made of straight pieces, which need not meet at the knots.
 ///
@@ -21,8 +21,8 @@ pub struct Piecewise {
     pub(super) gaps: Option<ConstantWithGaps>,
     search: Search,
     /// Knot, left and slope of each piece, for lookups, and for flights its end and the value there.
-    pub(super) rows: Vec<Row>,
-    stretches: Vec<Row>,
+    pub(super) rows: Vec<CacheRow>,
+    stretches: Vec<CacheRow>,
 }
 
 impl Piecewise {
@@ -62,12 +62,12 @@ impl Piecewise {
         let row = |(i, &knot): (usize, &f64)| {
             let end = knots[i + 1];
             let right = left[i] + slope[i] * (end - knot);
-            Row([knot, left[i], slope[i], end, right, 0.0, 0.0, 0.0])
+            CacheRow([knot, left[i], slope[i], end, right, 0.0, 0.0, 0.0])
         };
         let rows = knots[..left.len()].iter().enumerate().map(row).collect();
         let gaps = ConstantWithGaps::new(knots, &left, &slope);
         let stretch =
-            |i: usize| Row([knots[i], knots[i + 1], 1.0 / left[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
+            |i: usize| CacheRow([knots[i], knots[i + 1], 1.0 / left[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
         let stretches = (0..left.len()).filter(|&i| left[i] > 0.0).map(stretch).collect();
         let search = Search::new(knots);
         Self { knots: knots.to_vec(), left, slope, depth, gaps, search, rows, stretches }
@@ -150,7 +150,7 @@ impl Piecewise {
 
     /// Beginning, end and mean free path `1/σ̂` of every piece that begins above zero.
     #[inline(always)]
-    pub fn stretches(&self) -> &[Row] {
+    pub fn stretches(&self) -> &[CacheRow] {
         &self.stretches
     }
 
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn stretches_are_the_pieces_that_hold_something() {
         let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 2.0, 0.0, 0.5]);
-        let row = |begin, end, path| Row([begin, end, path, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let row = |begin, end, path| CacheRow([begin, end, path, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert_eq!(steps.stretches(), [row(1.0, 2.0, 0.5), row(3.0, 4.0, 2.0)]);
     }
 

@@ -18,7 +18,7 @@ use super::lanes::lanes;
 use super::{Hardware, WIDTH, ZERO, outlined, places};
 use crate::scalar_lane::{ROOT_HALF, ROUNDER};
 use crate::words::joined;
-use crate::{Lane, Mask, Row, Words32};
+use crate::{CacheRow, Lane, Mask, Words32};
 
 /// Eight doubles.
 #[derive(Debug, Clone, Copy)]
@@ -275,8 +275,8 @@ fn transposed([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
 
 kernel! {
     #[inline(always)]
-    fn columns(simd: Avx2, rows: [&Row; WIDTH]) -> [Pack; 4] {
-        let low = |row: &Row| f64x4::from_slice(simd, &row.0[..4]).into();
+    fn columns(simd: Avx2, rows: [&CacheRow; WIDTH]) -> [Pack; 4] {
+        let low = |row: &CacheRow| f64x4::from_slice(simd, &row.0[..4]).into();
         let [a, b, c, d, e, f, g, h] = rows;
         let [a, b, c, d] = transposed([low(a), low(b), low(c), low(d)]);
         let [e, f, g, h] = transposed([low(e), low(f), low(g), low(h)]);

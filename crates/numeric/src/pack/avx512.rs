@@ -20,7 +20,7 @@ use super::lanes::lanes;
 use super::{Hardware, WIDTH, outlined, places};
 use crate::scalar_lane::{ROOT_HALF, ROUNDER};
 use crate::words::joined;
-use crate::{Lane, Mask, Row, Words32};
+use crate::{CacheRow, Lane, Mask, Words32};
 
 /// Eight doubles.
 #[derive(Debug, Clone, Copy)]
@@ -214,8 +214,8 @@ kernel! {
 
 kernel! {
     #[inline(always)]
-    fn columns(simd: Avx512, rows: [&Row; WIDTH]) -> [Pack; 4] {
-        let half = |row: &Row| f64x4::from_slice(simd, &row.0[..4]).into();
+    fn columns(simd: Avx512, rows: [&CacheRow; WIDTH]) -> [Pack; 4] {
+        let half = |row: &CacheRow| f64x4::from_slice(simd, &row.0[..4]).into();
         let two = |low, high| {
             _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(half(low)), half(high))
         };

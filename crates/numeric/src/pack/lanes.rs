@@ -286,7 +286,7 @@ macro_rules! lanes {
             }
 
             #[inline(always)]
-            fn columns(self, table: &[Row]) -> [Self; 5] {
+            fn columns(self, table: &[CacheRow]) -> [Self; 5] {
                 let numbers = places_of(self.simd, self, super::last(table.len()));
                 let [a, b, c, d, e, f, g, h] = places(numbers);
                 let (a, b, c, d) = (&table[a], &table[b], &table[c], &table[d]);

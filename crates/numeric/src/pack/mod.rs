@@ -174,11 +174,11 @@ pub static ZERO: AtomicU64 = AtomicU64::new(0);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Row;
+    use crate::CacheRow;
 
     /// Entries, columns and choices by the bits of a hash.
     #[inline(always)]
-    fn looked_up<L: Lane>(numbers: L, list: &[f64], table: &[Row]) -> [L; 8] {
+    fn looked_up<L: Lane>(numbers: L, list: &[f64], table: &[CacheRow]) -> [L; 8] {
         let [a, b, c, d, e] = numbers.columns(table);
         let words = numbers.words();
         let words = words.plus(words.each([7, 0xffff_fff0])).times(0x85eb_ca6b).folded(13);
@@ -187,7 +187,7 @@ mod tests {
         [numbers.entry(list), a, b, c, d, e, chosen, negated]
     }
 
-    struct LookedUp<'a>([f64; WIDTH], &'a [f64], &'a [Row]);
+    struct LookedUp<'a>([f64; WIDTH], &'a [f64], &'a [CacheRow]);
     impl Task for LookedUp<'_> {
         type Output = [[f64; WIDTH]; 8];
         #[inline(always)]
@@ -204,8 +204,8 @@ mod tests {
     #[test]
     fn tables_and_words_are_those_of_scalars() {
         let list: Vec<f64> = (0..100).map(|n| 0.5 + f64::from(n)).collect();
-        let row = |x: &f64| Row(std::array::from_fn(|n| x + 1e3 * n as f64));
-        let table: Vec<Row> = list.iter().map(row).collect();
+        let row = |x: &f64| CacheRow(std::array::from_fn(|n| x + 1e3 * n as f64));
+        let table: Vec<CacheRow> = list.iter().map(row).collect();
         let levels = levels();
         for first in 0..100 {
             // The last places are beyond the lists.

@@ -11,7 +11,7 @@ use super::{Hardware, PackedWords, WIDTH, ZERO, last, outlined, places};
 use crate::rng::xoshiro;
 use crate::scalar_lane::{ROOT_HALF, ROUNDER};
 use crate::words::joined;
-use crate::{Lane, Mask, Row, Words32};
+use crate::{CacheRow, Lane, Mask, Words32};
 
 type Pack = f64x8<Neon>;
 type Bools = mask64x8<Neon>;
@@ -149,7 +149,7 @@ fn within(numbers: Pack, length: usize) -> [usize; WIDTH] {
 
 /// The first four entries of two rows side by side.
 #[inline(always)]
-fn two_rows(simd: Neon, first: &Row, second: &Row) -> Pack {
+fn two_rows(simd: Neon, first: &CacheRow, second: &CacheRow) -> Pack {
     let low = f64x4::from_slice(simd, &first.0[..4]);
     simd.combine_f64x4(low, f64x4::from_slice(simd, &second.0[..4]))
 }
@@ -278,7 +278,7 @@ impl Lane for Pack {
     }
 
     #[inline(always)]
-    fn columns(self, table: &[Row]) -> [Self; 5] {
+    fn columns(self, table: &[CacheRow]) -> [Self; 5] {
         let (simd, [a, b, c, d, e, f, g, h]) = (self.token(), within(self, table.len()));
         let (a, b, c, d) = (&table[a], &table[b], &table[c], &table[d]);
         let (e, f, g, h) = (&table[e], &table[f], &table[g], &table[h]);

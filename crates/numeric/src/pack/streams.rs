@@ -101,8 +101,8 @@ mod tests {
     use super::*;
     use crate::pack::{Task, levels, on};
 
-    struct Drawn([Xoshiro<u64>; WIDTH]);
-    impl Task for Drawn {
+    struct DrawnWords([Xoshiro<u64>; WIDTH]);
+    impl Task for DrawnWords {
         type Output = ([[f64; WIDTH]; 3], [Xoshiro<u64>; WIDTH]);
         #[inline(always)]
         fn run<S: Hardware>(self, simd: S) -> Self::Output {
@@ -126,7 +126,7 @@ mod tests {
             }
             for level in levels() {
                 let mut alone = alone;
-                let Ok((rows, after)) = on(level, Drawn(alone)) else { continue };
+                let Ok((rows, after)) = on(level, DrawnWords(alone)) else { continue };
                 for (lane, stream) in alone.iter_mut().enumerate() {
                     assert_eq!(rows[0][lane], stream.uniform());
                     assert_eq!(rows[1][lane], stream.positive_uniform());

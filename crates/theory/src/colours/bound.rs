@@ -97,14 +97,14 @@ pub fn square_within(
 
 /// Second moments of the ends of a flight: e, and f.
 #[derive(Debug, Clone, Copy)]
-pub struct Flight {
+pub struct FlightMoments {
     /// The second moment e of leaving.
     pub leaves: f64,
     /// The factor f of rates.
     pub collides: f64,
 }
 
-impl Flight {
+impl FlightMoments {
     /// A flight of a length, where α is constant.
     pub fn of(lost: f64, length: f64) -> Self {
         if lost == 0.0 {
@@ -121,7 +121,11 @@ impl Flight {
 }
 
 /// M of walks that begin with one flight and go on with others; `None` where no bound is known.
-pub fn largest(first: Flight, then: Flight, [scattered, absorbed]: [f64; 2]) -> Option<f64> {
+pub fn largest(
+    first: FlightMoments,
+    then: FlightMoments,
+    [scattered, absorbed]: [f64; 2],
+) -> Option<f64> {
     let room = 1.0 - scattered * then.collides;
     let of_rates = [scattered, absorbed];
     let after = (then.leaves + absorbed * then.collides) / room;
@@ -232,7 +236,7 @@ mod tests {
         let rates = Rates { majorants: vec![2.0], albedos: vec![0.7] };
         let square = square(&rates, Proposal::Hero(0), 0, &[1.5], 1.0);
         assert!((square.lost - 1.5).abs() < 1e-15 && (square.scattered - 1.05).abs() < 1e-15);
-        let flight = Flight::of(square.lost, 3.0);
+        let flight = FlightMoments::of(square.lost, 3.0);
         let found = largest(flight, flight, [square.scattered, square.absorbed]).expect("a bound");
         assert!((found - 1.0).abs() < 1e-8, "{found}");
     }
@@ -244,7 +248,7 @@ mod tests {
         // Each scattering multiplies the second moment by 4: a quarter of the flights may collide.
         assert!((square.scattered - 4.0).abs() < 1e-12);
         let at = |length: f64| {
-            let flight = Flight::of(square.lost, length);
+            let flight = FlightMoments::of(square.lost, length);
             largest(flight, flight, [square.scattered, square.absorbed])
         };
         assert!(at(0.28).is_some() && at(0.29).is_none());
@@ -313,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_loss_of_nearly_nothing_collides_all_along() {
-        let flight = Flight::of(-1.1e-16, 0.5);
+        let flight = FlightMoments::of(-1.1e-16, 0.5);
         assert!((flight.collides - 0.5).abs() < 1e-15, "{flight:?}");
     }
 

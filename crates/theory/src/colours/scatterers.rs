@@ -60,7 +60,7 @@ pub enum Divergence {
 }
 
 /// Energies of a body of one albedo.
-pub trait Body: Send + Sync {
+pub trait BodyEnergies: Send + Sync {
     /// Reflectance and transmittance, of albedos above 1, too; `None` where they are infinite.
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]>;
 
@@ -81,7 +81,7 @@ pub trait Body: Send + Sync {
 
 /// Scoring of all channels by one walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Tracker {
+pub enum BodyTracker {
     /// Scores one channel by its own walk, the others 0.
     Independent,
     /// The walk of a hero, divided by its density.
@@ -96,23 +96,23 @@ pub enum Tracker {
 }
 
 /// A body with everything that its moments depend on.
-pub struct Spectrum<'a> {
-    body: Box<dyn Body + 'a>,
+pub struct BodySpectrum<'a> {
+    body: Box<dyn BodyEnergies + 'a>,
     colours: &'a Colours,
     hero: Vec<f64>,
-    tracker: Tracker,
+    tracker: BodyTracker,
     orders: Option<Orders>,
 }
 
-impl<'a> Spectrum<'a> {
+impl<'a> BodySpectrum<'a> {
     /// Joins the parts; `hero` has one probability for each channel.
     pub fn new(
-        body: Box<dyn Body + 'a>,
+        body: Box<dyn BodyEnergies + 'a>,
         colours: &'a Colours,
         hero: Vec<f64>,
-        tracker: Tracker,
+        tracker: BodyTracker,
     ) -> Self {
-        let orders = if tracker == Tracker::Mis { body.orders() } else { None };
+        let orders = if tracker == BodyTracker::Mis { body.orders() } else { None };
         Self { body, colours, hero, tracker, orders }
     }
 
@@ -138,11 +138,11 @@ impl<'a> Spectrum<'a> {
     /// probabilities.
     fn walkers(&self) -> Vec<(f64, f64)> {
         match self.tracker {
-            Tracker::Hero => {
+            BodyTracker::Hero => {
                 let heroes = self.hero.iter().copied().zip(self.colours.albedos.iter().copied());
                 heroes.filter(|&(weight, _)| weight > 0.0).collect()
             }
-            Tracker::Tracking { scatter } => vec![(1.0, scatter)],
+            BodyTracker::Tracking { scatter } => vec![(1.0, scatter)],
             _ => Vec::new(),
         }
     }
@@ -159,7 +159,7 @@ impl<'a> Spectrum<'a> {
         let side = usize::from(end == End::Transmitted);
         let total: i32 = k.iter().sum();
         match self.tracker {
-            Tracker::Independent => {
+            BodyTracker::Independent => {
                 let channel = k.iter().position(|&k| k == total);
                 Some(channel.map_or(Known::new(0.0, 0.0), |channel| {
                     let weight = self.hero[channel].powi(1 - total);
@@ -167,14 +167,14 @@ impl<'a> Spectrum<'a> {
                     found.map_or(Known::new(0.0, 0.0), |found| found[side] * weight)
                 }))
             }
-            Tracker::Hero | Tracker::Tracking { .. } => {
+            BodyTracker::Hero | BodyTracker::Tracking { .. } => {
                 let each = self.walkers().into_iter().map(|(weight, scatter)| {
                     let found = self.body.power(self.albedo_of_power(k, scatter));
                     found.map_or(Known::INFINITE, |found| found[side]) * weight
                 });
                 Some(each.sum())
             }
-            Tracker::Mis => {
+            BodyTracker::Mis => {
                 let orders = self.orders.as_ref()?;
                 let mut powers = vec![1.0; k.len()];
                 let [mut sum, mut off] = [0.0, orders.blur];
@@ -201,7 +201,7 @@ impl<'a> Spectrum<'a> {
         let covariances = pairs.filter_map(|(i, pair)| self.covariance(i, pair, &channels));
         let covariances = covariances.collect();
         let heroes: Vec<(f64, f64)> = match self.tracker {
-            Tracker::Tracking { scatter } => vec![(1.0, scatter)],
+            BodyTracker::Tracking { scatter } => vec![(1.0, scatter)],
             _ => self.hero.iter().copied().zip(self.colours.albedos.iter().copied()).collect(),
         };
         let lookups = self.body.lookups(&heroes);

@@ -61,7 +61,7 @@ pub enum Made {
 
 /// Means of the scores of both techniques, by [`Made`] and k; 0 for k = 0.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Scores {
+pub struct TechniqueScores {
     /// `E[…]`.
     pub means: [Powers; 2],
     /// Bounds on their errors.
@@ -77,10 +77,10 @@ pub struct Contour {
     /// Nodes of a line, all of them and those up to ω = β.
     count: usize,
     unit: usize,
-    lines: Vec<Line>,
+    lines: Vec<ContourLine>,
 }
 
-struct Line {
+struct ContourLine {
     /// Re s.
     real: f64,
     /// Real parts, then imaginary parts of the kernels of all scores, node by node, times the weights of the nodes.
@@ -110,7 +110,7 @@ impl Contour {
         let reals = [highest, 1, 0].into_iter().map(|power| power as f64 + 0.5);
         let lines = reals
             .take(if is_any { 3 } else { 1 })
-            .map(|real| Line::new(beta, highest, count, real))
+            .map(|real| ContourLine::new(beta, highest, count, real))
             .collect();
         Self { highest, count, unit, lines }
     }
@@ -210,8 +210,8 @@ impl Contour {
     }
 
     /// Means for a ratio q, from the moments of x on a line. `off` is their relative error; where it is 0 no errors are computed.
-    pub fn scores(&self, line: usize, ratio: f64, moments: &[f64], off: f64) -> Scores {
-        let mut found = Scores::default();
+    pub fn scores(&self, line: usize, ratio: f64, moments: &[f64], off: f64) -> TechniqueScores {
+        let mut found = TechniqueScores::default();
         if ratio <= 0.0 {
             return found;
         }
@@ -255,7 +255,7 @@ impl Contour {
     }
 }
 
-impl Line {
+impl ContourLine {
     fn new(beta: usize, highest: usize, count: usize, real: f64) -> Self {
         let scores = [Made::ByPoint, Made::ByCollision]
             .into_iter()
@@ -340,7 +340,8 @@ mod tests {
                         let line = contour.line(ratio);
                         let moments = contour.moments(line, &row, mean);
                         let off = f64::EPSILON * (ROUNDINGS + mean);
-                        let Scores { means, errors } = contour.scores(line, ratio, &moments, off);
+                        let TechniqueScores { means, errors } =
+                            contour.scores(line, ratio, &moments, off);
                         for (k, power) in (1..=highest).zip(1..) {
                             let point = |x: f64| ratio * x / (1.0 + heuristic.raised(ratio * x));
                             let kept =

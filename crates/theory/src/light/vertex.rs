@@ -19,7 +19,7 @@
 //!
 //! Source: derived.
 
-use super::contour::{Contour, Scores};
+use super::contour::{Contour, TechniqueScores};
 use super::{Combination, Shadow, Techniques};
 use crate::prediction::raw::{HIGHEST, Powers};
 
@@ -61,7 +61,7 @@ impl Weights {
         let (mut connected, mut hit) = ([0.0; HIGHEST + 1], [0.0; HIGHEST + 1]);
         let mut errors = [[0.0; HIGHEST + 1]; 2];
         if self.techniques.has_nulls() {
-            let Scores { means, errors: of_means } =
+            let TechniqueScores { means, errors: of_means } =
                 self.contour.scores(self.contour.line(towards), towards, moments, off);
             ([connected, hit], errors) = (means, of_means);
         } else {

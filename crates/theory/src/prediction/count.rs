@@ -45,7 +45,7 @@ impl CountDistribution {
     pub fn always(number: f64) -> Self {
         let mut pmf = Vec::new();
         if number.fract() == 0.0 && (0.0..=LARGEST_MEAN).contains(&number) {
-            Window::default().add(&mut pmf, 1.0, 0.0, whole(number));
+            PoissonWindow::default().add(&mut pmf, 1.0, 0.0, whole(number));
         }
         let [error, moments_error] = [0.0; 2];
         let (mean, variance, kurtosis, grade) = (number, 0.0, 1.0, Grade::Proven);
@@ -124,7 +124,7 @@ impl CountDistribution {
 /// `P(N = 0), P(N = 1), …` of a Poisson number N of the given mean, up to where they are negligible.
 pub fn poisson(mean: f64) -> Vec<f64> {
     let mut pmf = Vec::new();
-    Window::default().add(&mut pmf, 1.0, mean, 0);
+    PoissonWindow::default().add(&mut pmf, 1.0, mean, 0);
     pmf
 }
 
@@ -134,12 +134,12 @@ pub fn poisson(mean: f64) -> Vec<f64> {
 /// P(n) = P(n − 1) m/n,  normalised by their own sum: no factorial, no logarithm, nothing to cancel
 /// ```
 #[derive(Debug, Default)]
-pub struct Window {
+pub struct PoissonWindow {
     above: Vec<f64>,
     below: Vec<f64>,
 }
 
-impl Window {
+impl PoissonWindow {
     /// Adds `weight · P(N = n)` of a Poisson number of the given mean to `pmf[n + shift]`.
     pub fn add(&mut self, pmf: &mut Vec<f64>, weight: f64, mean: f64, shift: usize) {
         let mode = whole(mean);

@@ -7,7 +7,7 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, with the cost of the walk added.
 
-use super::search::{Goal, Kind};
+use super::search::{Goal, PlaceKind};
 use crate::{Prediction, parallel};
 
 /// Share of the limit at which a rising figure of merit is reported.
@@ -23,7 +23,7 @@ pub struct Optimum {
     /// Limit of the figure of merit for σ̂ → ∞, if it rises to one.
     pub limit: Option<f64>,
     /// Kind of this σ̂.
-    pub kind: Kind,
+    pub kind: PlaceKind,
 }
 
 /// Tolerance of the best `ln σ̂`.
@@ -91,16 +91,16 @@ fn best(goal: &Goal, places: &[f64]) -> Option<Optimum> {
         return None;
     }
     if value(step) == 0.0 {
-        return Some(found(places[step], Kind::NoVariance));
+        return Some(found(places[step], PlaceKind::NoVariance));
     }
     if step == 0 {
-        return Some(found(places[0], Kind::EndOfSearch));
+        return Some(found(places[0], PlaceKind::EndOfSearch));
     }
     let before = places[step - 1];
     let (far, limit) = if step == last {
         match limit(goal, [before, places[last]]) {
             Some(found) => found,
-            None => return Some(found(places[last], Kind::EndOfSearch)),
+            None => return Some(found(places[last], PlaceKind::EndOfSearch)),
         }
     } else {
         // A refused place beside the best one is a cliff that golden sections walk up to.
@@ -108,12 +108,12 @@ fn best(goal: &Goal, places: &[f64]) -> Option<Optimum> {
         // Refused because of too many collisions, not of its domain: this is as near to the limit as draws can be made.
         let is_cliff = (step + 1..COARSE).all(|step| value(step).is_infinite());
         if !(is_cliff && value(step - 1) <= value(step) * (1.0 + FLAT)) {
-            return Some(found(log, Kind::Optimum));
+            return Some(found(log, PlaceKind::Optimum));
         }
         (log, extrapolated(goal, [before, log]))
     };
     let edge = goal.edge(far.exp(), -1.0, limit / SHARE, FURTHEST);
-    let near = |edge: f64| found(far + edge.ln(), Kind::NearLimit);
+    let near = |edge: f64| found(far + edge.ln(), PlaceKind::NearLimit);
     (edge > 0.0).then(|| Optimum { limit: Some(limit.recip()), ..near(edge) })
 }
 

@@ -36,7 +36,7 @@ const DIGITS: f64 = 4.0;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub enum Kind {
+pub enum PlaceKind {
     /// Nothing is free.
     #[default]
     Fixed,
@@ -50,7 +50,7 @@ pub enum Kind {
     EndOfSearch,
 }
 
-impl Kind {
+impl PlaceKind {
     /// Returns the words in tables and files.
     pub fn words(self) -> &'static str {
         match self {
@@ -171,15 +171,15 @@ impl<'a> Goal<'a> {
     }
 
     /// Returns the place to advise, with few digits, its value and its kind, given the least value.
-    pub fn settled(&self, Least { mut x, mut value, is_open }: Least) -> (f64, f64, Kind) {
-        let mut kind = if is_open { Kind::EndOfSearch } else { Kind::Optimum };
+    pub fn settled(&self, Least { mut x, mut value, is_open }: Least) -> (f64, f64, PlaceKind) {
+        let mut kind = if is_open { PlaceKind::EndOfSearch } else { PlaceKind::Optimum };
         if !is_open && self.of(x / FLAT) <= value * (1.0 + ABOVE_LIMIT) {
             // The search ends where little is gained: the limit itself lies far beyond.
             let level = value.min(self.of(x * MAX_FACTOR)) * (1.0 + ABOVE_LIMIT);
             let edge = self.edge(x, -1.0, level, FURTHEST);
             // Where no σ̂ is too small, one is as good as another.
             if edge > 0.0 {
-                (x, kind) = (x * edge, Kind::NearLimit);
+                (x, kind) = (x * edge, PlaceKind::NearLimit);
                 value = self.of(x);
             }
         }
@@ -189,7 +189,7 @@ impl<'a> Goal<'a> {
     }
 
     /// Returns the place to advise near `start`; `None` where no place can be taken.
-    pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, Kind)> {
+    pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, PlaceKind)> {
         self.least(start, reach, f64::INFINITY).map(|least| self.settled(least))
     }
 
@@ -253,7 +253,7 @@ mod tests {
         // x + 4/x: smallest at 2, doubled at 2(2 ± √3).
         let goal = Goal::new(|x| x + 4.0 / x);
         let (x, value, kind) = goal.best(1.0, 2).expect("an optimum");
-        assert!((x - 2.0).abs() < 0.02 && (value - 4.0).abs() < 1e-3 && kind == Kind::Optimum);
+        assert!((x - 2.0).abs() < 0.02 && (value - 4.0).abs() < 1e-3 && kind == PlaceKind::Optimum);
         let [low, high] = [-1.0, 1.0].map(|sign| goal.edge(2.0, sign, 8.0, MAX_FACTOR));
         assert!((low - 0.268).abs() < 2e-3 && (high - 3.732).abs() < 0.03, "{low} {high}");
         assert!(goal.known.borrow().len() < 30, "{} values", goal.known.borrow().len());
@@ -267,7 +267,7 @@ mod tests {
         let limit = Goal::new(|x: f64| x * (1.0 / x).exp_m1());
         let (x, value, kind) = limit.best(0.3, 2).expect("near the limit");
         assert!((x * 0.0968 - 1.0).abs() < 0.02 && value < 1.0501, "{x} {value}");
-        assert_eq!(kind, Kind::NearLimit);
+        assert_eq!(kind, PlaceKind::NearLimit);
         assert_eq!(Goal::new(|_| f64::INFINITY).best(1.0, 2), None);
     }
 }

@@ -60,7 +60,7 @@ use numeric::geometry::{Bounds, Point, Ray};
 
 /// Light of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Light {
+pub enum BallLight {
     /// Light from all sides.
     Environment,
     /// Light from a black sphere of the given radius at the centre.
@@ -90,7 +90,7 @@ pub struct Sphere {
     /// R.
     pub radius: f64,
     /// Light.
-    pub light: Light,
+    pub light: BallLight,
     /// Quantity that is sought.
     pub sought: Sought,
 }
@@ -144,7 +144,7 @@ impl Sphere {
         if self.scene.albedo.even().is_none() {
             found.push(("albedo", "the albedo varies".into(), "theory takes one number here"));
         }
-        let core = if let Light::BlackSphere(core) = self.light { core } else { 0.0 };
+        let core = if let BallLight::BlackSphere(core) = self.light { core } else { 0.0 };
         if core >= self.radius {
             let wrong = format!("its radius is {core}, that of the ball {}", self.radius);
             found.push(("light", wrong, "the black sphere is inside the ball"));
@@ -163,7 +163,7 @@ impl Sphere {
             found.push(("ray", wrong, "the point is in the ball"));
         }
         let is_central = self.sought == Sought::MeanIntensity && away <= 1e-12 * self.radius;
-        if matches!(self.light, Light::Distant(_)) && !is_central {
+        if matches!(self.light, BallLight::Distant(_)) && !is_central {
             let help = "theory knows it at the centre: begin the ray there, and write \
                         `sought = \"mean-intensity\"`";
             found.push(("light", "a distant light is not radially symmetric".into(), help));
@@ -172,7 +172,7 @@ impl Sphere {
     }
 }
 
-fn read_light(settings: &Settings) -> Option<Light> {
+fn read_light(settings: &Settings) -> Option<BallLight> {
     let names = ["environment", "black-sphere", "distant"].map(str::to_owned);
     let explain = |name: &str| {
         let found = "next-event estimation of a point light in a medium that scatters more than \
@@ -182,10 +182,10 @@ fn read_light(settings: &Settings) -> Option<Light> {
     };
     let (index, light) = settings.chosen_explained("light", &names, &explain)?;
     let read = match index {
-        0 => Some(Light::Environment),
-        1 => light.number("radius", Domain::Positive).map(Light::BlackSphere),
+        0 => Some(BallLight::Environment),
+        1 => light.number("radius", Domain::Positive).map(BallLight::BlackSphere),
         _ => light.triple("direction").and_then(|direction| {
-            let found = Point(direction).normalised().map(Light::Distant);
+            let found = Point(direction).normalised().map(BallLight::Distant);
             if found.is_none() {
                 light.fault("direction", "the direction is the zero vector", "point at the light");
             }
@@ -302,17 +302,17 @@ mod tests {
     fn light<const N: usize>(
         name: &str,
         settings: [(&str, Value); N],
-    ) -> (Option<Light>, Vec<String>) {
+    ) -> (Option<BallLight>, Vec<String>) {
         read([("light", table([(name, table(settings))]))], read_light)
     }
 
     #[test]
     fn light_comes_from_all_sides_from_the_middle_or_from_afar() {
-        assert_eq!(light("environment", []), (Some(Light::Environment), vec![]));
+        assert_eq!(light("environment", []), (Some(BallLight::Environment), vec![]));
         let radius = ("radius", Value::Number(0.25));
-        assert_eq!(light("black-sphere", [radius]), (Some(Light::BlackSphere(0.25)), vec![]));
+        assert_eq!(light("black-sphere", [radius]), (Some(BallLight::BlackSphere(0.25)), vec![]));
         let far = light("distant", [("direction", list(&[0.0, 0.0, 4.0]))]).0;
-        assert_eq!(far, Some(Light::Distant(Point([0.0, 0.0, 1.0]))));
+        assert_eq!(far, Some(BallLight::Distant(Point([0.0, 0.0, 1.0]))));
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub const HIGHEST_ORDER: usize = 5;
 pub const MAX_CHANNELS: usize = 34;
 
 /// The values of one draw, one per channel.
-pub type Values = super::Values<MAX_CHANNELS>;
+pub type BidirectionalValues = super::Values<MAX_CHANNELS>;
 
 /// Place of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ impl BidirectionalRod {
 }
 
 impl Problem for BidirectionalRod {
-    type Value = Values;
+    type Value = BidirectionalValues;
 
     const OPTIONS: &'static [ProblemOption] = &[ProblemOption::Sensor];
 

@@ -1,7 +1,7 @@
 //! The forms of `rod` with `light`: what a camera sees of an emitter through it, in one channel or several.
 
 use super::channels::agree;
-use super::rod::{Quantity, Rod, read_scattering, shares};
+use super::rod::{Rod, RodQuantity, read_scattering, shares};
 use super::{ChannelValues, Problem, ProblemOption, number as read_number};
 use media::catalogue::{Domain, Settings, Value};
 use media::{Body, Medium, Piecewise};
@@ -20,7 +20,7 @@ pub struct LitRod {
 impl LitRod {
     /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
     pub fn new(medium: Medium, albedo: &Piecewise, forward: &Piecewise) -> Self {
-        Self { rod: Rod::new(medium, albedo, forward, vec![Quantity::Transmitted]) }
+        Self { rod: Rod::new(medium, albedo, forward, vec![RodQuantity::Transmitted]) }
     }
 }
 

@@ -12,7 +12,7 @@ use numeric::Lane;
 
 /// Light behind the slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Light {
+pub enum LightBehind {
     /// All directions with at least this cosine with the normal.
     Cap(f64),
     /// A disc about the ray.
@@ -28,7 +28,7 @@ pub enum Light {
     Point(f64),
 }
 
-impl Light {
+impl LightBehind {
     /// Returns whether a direction that is chosen by the phase function may meet it.
     pub fn can_be_hit(self) -> bool {
         matches!(self, Self::Cap(_) | Self::Disc { .. })
@@ -103,12 +103,12 @@ pub struct LitSlab {
     /// p.
     pub phase: Phase,
     /// Light behind the slab.
-    pub light: Light,
+    pub light: LightBehind,
 }
 
 impl LitSlab {
     /// A slab with an albedo in `(0, 1]`; the distance along a medium is its depth.
-    pub fn new(medium: Medium, albedo: f64, phase: Phase, light: Light) -> Self {
+    pub fn new(medium: Medium, albedo: f64, phase: Phase, light: LightBehind) -> Self {
         Self { medium, albedo, phase, light }
     }
 
@@ -154,24 +154,24 @@ impl Problem for LitSlab {
     }
 }
 
-fn read_light(settings: &Settings) -> Option<Light> {
+fn read_light(settings: &Settings) -> Option<LightBehind> {
     let names = ["cap", "disc", "distant", "point"].map(str::to_owned);
     let (index, light) = settings.chosen("light", &names)?;
     let length = |key: &'static str| light.number(key, Domain::Positive);
     let read = match index {
         0 => {
             let help = "the light is behind the slab, and has a size: 0 < cosine < 1";
-            read_cosine(&light, |cosine| cosine < 1.0, help).map(Light::Cap)
+            read_cosine(&light, |cosine| cosine < 1.0, help).map(LightBehind::Cap)
         }
         1 => {
             let (distance, radius) = (length("distance"), length("radius"));
-            distance.zip(radius).map(|(distance, radius)| Light::Disc { distance, radius })
+            distance.zip(radius).map(|(distance, radius)| LightBehind::Disc { distance, radius })
         }
         2 => {
             let help = "the light is behind the slab: 0 < cosine ≤ 1";
-            read_cosine(&light, |cosine| cosine <= 1.0, help).map(Light::Distant)
+            read_cosine(&light, |cosine| cosine <= 1.0, help).map(LightBehind::Distant)
         }
-        _ => length("distance").map(Light::Point),
+        _ => length("distance").map(LightBehind::Point),
     };
     light.close();
     read
@@ -186,8 +186,8 @@ mod tests {
     fn chosen_directions_meet_the_light_and_have_its_density() {
         // ∫ dω = ∫ 2π dμ over the light is ∫ du/p_nee: Ω of a cap, 2π(1 − D/√(D² + R²)) of a disc.
         let rule = GaussLegendre::new(40);
-        let disc = Light::Disc { distance: 0.5, radius: 0.7 };
-        for (light, before) in [(Light::Cap(0.3), 0.2), (disc, 0.4)] {
+        let disc = LightBehind::Disc { distance: 0.5, radius: 0.7 };
+        for (light, before) in [(LightBehind::Cap(0.3), 0.2), (disc, 0.4)] {
             let lowest = if light == disc { 0.9 / 0.9f64.hypot(0.7) } else { 0.3 };
             let found = rule.integrate(0.0, 1.0, |u| {
                 let [cosine, spread] = light.chosen(u, before);
@@ -203,12 +203,12 @@ mod tests {
 
     #[test]
     fn lights_without_size_are_met_by_shadow_rays_only() {
-        for light in [Light::Distant(0.8), Light::Point(2.0)] {
+        for light in [LightBehind::Distant(0.8), LightBehind::Point(2.0)] {
             let [cosine, _] = light.chosen(0.4, 1.0);
             assert!(!light.can_be_hit() && !light.is_met(cosine, 1.0));
             assert_eq!(light.spread(cosine, 1.0), 0.0);
         }
-        assert_eq!(Light::Distant(0.8).chosen(0.4, 3.0), [0.8, 1.0]);
-        assert_eq!(Light::Point(2.0).chosen(0.4, 3.0), [1.0, 0.04]);
+        assert_eq!(LightBehind::Distant(0.8).chosen(0.4, 3.0), [0.8, 1.0]);
+        assert_eq!(LightBehind::Point(2.0).chosen(0.4, 3.0), [1.0, 0.04]);
     }
 }

@@ -92,7 +92,7 @@ pub const HIGHEST_ORDER: u64 = 6;
 
 /// Quantity of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum RodQuantity {
     /// The weight that leaves at the beginning after this number of scatterings.
     ReflectedBy(usize),
     /// The weight that leaves at the end after this number of scatterings.
@@ -107,7 +107,7 @@ pub enum Quantity {
     Transmitted,
 }
 
-impl Quantity {
+impl RodQuantity {
     /// The channel's name.
     pub fn name(self) -> String {
         match self {
@@ -129,7 +129,7 @@ pub struct Rod {
     /// `p_f`, as a function of the distance.
     pub forward: Piecewise,
     /// Quantities of the channels of a draw; the last two are always reflectance and transmittance.
-    pub channels: Vec<Quantity>,
+    pub channels: Vec<RodQuantity>,
     /// Number of parts of the rod that have their flux as a channel: 0 or all of them.
     pub parts: usize,
 }
@@ -143,11 +143,11 @@ impl Rod {
         medium: Medium,
         albedo: &Piecewise,
         forward: &Piecewise,
-        channels: Vec<Quantity>,
+        channels: Vec<RodQuantity>,
     ) -> Self {
         let span = medium.span();
         let parts =
-            channels.iter().filter(|quantity| matches!(quantity, Quantity::Flux(_))).count();
+            channels.iter().filter(|quantity| matches!(quantity, RodQuantity::Flux(_))).count();
         Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels, parts }
     }
 
@@ -182,18 +182,18 @@ impl Rod {
 }
 
 /// The channels that a case requests.
-pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Quantity> {
-    let mut channels: Vec<Quantity> = (0..parts).map(Quantity::Flux).collect();
+pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<RodQuantity> {
+    let mut channels: Vec<RodQuantity> = (0..parts).map(RodQuantity::Flux).collect();
     if let Some(highest) = orders {
-        channels.push(Quantity::TransmittedBy(0));
+        channels.push(RodQuantity::TransmittedBy(0));
         for order in 1..=highest {
-            channels.extend([Quantity::ReflectedBy(order), Quantity::TransmittedBy(order)]);
+            channels.extend([RodQuantity::ReflectedBy(order), RodQuantity::TransmittedBy(order)]);
         }
     }
     if absorbed {
-        channels.push(Quantity::Absorbed);
+        channels.push(RodQuantity::Absorbed);
     }
-    channels.extend([Quantity::Reflected, Quantity::Transmitted]);
+    channels.extend([RodQuantity::Reflected, RodQuantity::Transmitted]);
     channels
 }
 
@@ -315,10 +315,10 @@ mod tests {
 
     #[test]
     fn the_last_channels_are_what_leaves() {
-        assert_eq!(channels(0, false, None), [Quantity::Reflected, Quantity::Transmitted]);
+        assert_eq!(channels(0, false, None), [RodQuantity::Reflected, RodQuantity::Transmitted]);
         let all = channels(4, true, Some(6));
         assert_eq!(all.len(), MAX_CHANNELS);
-        assert_eq!(all[MAX_CHANNELS - 2..], [Quantity::Reflected, Quantity::Transmitted]);
+        assert_eq!(all[MAX_CHANNELS - 2..], [RodQuantity::Reflected, RodQuantity::Transmitted]);
         assert_eq!(all[0].name(), "flux, part 1");
         assert_eq!(all[6].name(), "transmittance, order 1");
     }

@@ -70,7 +70,7 @@ pub struct SingleScattering {
     volume: Arc<Volume>,
     ray: Ray,
     medium: Medium,
-    light: Light,
+    light: PointLight,
     albedo: f64,
     phase: Phase,
     radiance: OnceLock<Known>,
@@ -91,7 +91,7 @@ pub struct OnTheLine(pub f64);
 
 /// A point light as the ray sees it.
 #[derive(Debug, Clone, Copy)]
-struct Light {
+struct PointLight {
     position: Point,
     power: f64,
     /// Distance from the ray's origin to the point of its line that is nearest to the light.
@@ -132,7 +132,7 @@ impl SingleScattering {
         } else {
             angles.length()
         };
-        let light = Light { position, power, foot, distance, angles, width };
+        let light = PointLight { position, power, foot, distance, angles, width };
         let radiance = OnceLock::new();
         Ok(Self { volume, ray, medium, light, albedo, phase, radiance })
     }

@@ -80,14 +80,14 @@ use numeric::digits::number;
 
 /// Direction of the light that enters the slab.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Light {
+pub enum IncidentLight {
     /// Light from one direction, by its cosine `μ₀` with the normal of the slab, in `(0, 1]`.
     Collimated(f64),
     /// Evenly from all sides, the Lambertian law `2μ₀ dμ₀`.
     Diffuse,
 }
 
-impl Light {
+impl IncidentLight {
     /// `μ₀`, where all of it has the same.
     pub fn cosine(self) -> Option<f64> {
         match self {
@@ -101,7 +101,7 @@ impl Light {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Incidence {
     /// Direction of the light.
-    pub light: Light,
+    pub light: IncidentLight,
     /// Phase function.
     pub phase: Phase,
 }
@@ -218,13 +218,13 @@ pub(super) fn read_incidence(settings: &Settings) -> Option<Incidence> {
 }
 
 /// Reads `incidence`.
-pub(super) fn read_light(settings: &Settings) -> Option<Light> {
+pub(super) fn read_light(settings: &Settings) -> Option<IncidentLight> {
     let (index, light) = settings.chosen("incidence", &["collimated".into(), "diffuse".into()])?;
     let read = if index == 0 {
         let help = "it is the cosine of the angle with the normal of the slab: 0 < cosine ≤ 1";
-        read_cosine(&light, |cosine| cosine <= 1.0, help).map(Light::Collimated)
+        read_cosine(&light, |cosine| cosine <= 1.0, help).map(IncidentLight::Collimated)
     } else {
-        Some(Light::Diffuse)
+        Some(IncidentLight::Diffuse)
     };
     light.close();
     read
@@ -255,8 +255,8 @@ mod tests {
         let light = |name, settings| read([("incidence", table([(name, settings)]))], read_light);
         let collimated =
             |cosine: f64| light("collimated", table([("cosine", Value::Number(cosine))]));
-        assert_eq!(collimated(0.25), (Some(Light::Collimated(0.25)), vec![]));
-        assert_eq!(light("diffuse", table([])).0, Some(Light::Diffuse));
+        assert_eq!(collimated(0.25), (Some(IncidentLight::Collimated(0.25)), vec![]));
+        assert_eq!(light("diffuse", table([])).0, Some(IncidentLight::Diffuse));
         for cosine in [1.5, 0.0, -0.3] {
             assert_eq!(collimated(cosine), (None, vec![format!("`cosine` is {cosine}")]));
         }

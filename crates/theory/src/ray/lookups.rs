@@ -13,7 +13,7 @@
 use super::mesh::Panel;
 use super::product::{Integrals, Product};
 use crate::Mesh;
-use crate::prediction::count::{CountDistribution, LARGEST_MEAN, Window};
+use crate::prediction::count::{CountDistribution, LARGEST_MEAN, PoissonWindow};
 use numeric::sum::Sum;
 
 /// A panel with more survived collisions than this, or than half a standard deviation of those before,
@@ -29,7 +29,7 @@ impl Product<'_> {
         if !(self.with_distributions && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
             return law;
         }
-        let mut walk = Walk::default();
+        let mut walk = PanelSum::default();
         for panel in mesh.panels() {
             if walk.alive() < RARE {
                 break;
@@ -42,14 +42,14 @@ impl Product<'_> {
 
 /// State of the sum over panels.
 #[derive(Default)]
-struct Walk {
+struct PanelSum {
     deaths: Sum,
     survivals: Sum,
     pmf: Vec<f64>,
-    window: Window,
+    window: PoissonWindow,
 }
 
-impl Walk {
+impl PanelSum {
     fn alive(&self) -> f64 {
         (-self.deaths.value()).exp()
     }

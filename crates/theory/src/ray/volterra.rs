@@ -39,14 +39,14 @@ const WORST: f64 = 0.05;
 pub const ORDERS: usize = 8;
 
 /// The part that an estimator adds at a collision, as moments.
-pub trait Source {
+pub trait ScoreMoments {
     /// `g_k(x)` for k = 1 … 8 from `v = e^{−σ̄(ℓ−x)}` and `A_1 … A_8` at `x` (only lower ones
     /// than k may be used).
     fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64;
 }
 
 /// Mean, moments and cost of such an estimator over the whole support, at constant `σ̄ > 0`.
-pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
+pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn ScoreMoments) -> Prediction {
     let end = mesh.support().to;
     let layer = cuts(mesh, sampling);
     let fine = mesh.refined(&layer, &|mesh, panel| panel_functions(mesh, panel, sampling, end));
@@ -110,7 +110,7 @@ fn sweep(
     panel: Panel<'_>,
     sampling: f64,
     end: f64,
-    source: &dyn Source,
+    source: &dyn ScoreMoments,
     after: [f64; ORDERS],
 ) -> [f64; ORDERS] {
     let ratio: Vec<f64> = panel.extinction.iter().map(|s| s / sampling).collect();

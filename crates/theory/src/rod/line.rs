@@ -22,7 +22,7 @@
 use std::cell::OnceCell;
 use std::sync::LazyLock;
 
-use super::walk::Node;
+use super::walk::RodPoint;
 use numeric::Span;
 use numeric::matrix::Matrix;
 use numeric::quadrature::GaussLegendre;
@@ -40,19 +40,19 @@ static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(NODES
 pub struct Line {
     /// Panels and their widths.
     panels: Vec<(Span, f64)>,
-    nodes: Vec<Node>,
+    nodes: Vec<RodPoint>,
     share: f64,
     /// Joined layers of both kinds of rates and of every power.
     flows: [[OnceCell<Option<Layers>>; HIGHEST + 1]; 2],
 }
 
 /// A function of a place.
-type Rates<'f> = dyn Fn(&Node) -> [f64; 2] + 'f;
+type Rates<'f> = dyn Fn(&RodPoint) -> [f64; 2] + 'f;
 
 impl Line {
     /// Joins panels with their widths and the places of their nodes, in order. What leaves a panel is increased by a share
     /// for each panel and each collision.
-    pub fn new(panels: Vec<(Span, f64)>, nodes: Vec<Node>, share: f64) -> Self {
+    pub fn new(panels: Vec<(Span, f64)>, nodes: Vec<RodPoint>, share: f64) -> Self {
         Self { panels, nodes, share, flows: Default::default() }
     }
 
@@ -62,7 +62,7 @@ impl Line {
     }
 
     /// The nodes of all panels.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[RodPoint] {
         &self.nodes
     }
 
@@ -175,13 +175,13 @@ const ENDS: [usize; 2] = [NODES, ROWS + NODES];
 
 /// Transmissions and reflections of a layer.
 #[derive(Clone, Copy)]
-struct Ends {
+struct LayerResponse {
     through: [f64; 2],
     /// Reflections at the beginning and at the end.
     back: [f64; 2],
 }
 
-impl Ends {
+impl LayerResponse {
     /// The layer seen from its end.
     fn turned(self) -> Self {
         let [[a, b], [c, d]] = [self.through, self.back];
@@ -197,9 +197,9 @@ impl Ends {
 }
 
 impl Layer {
-    fn ends(&self) -> Ends {
+    fn ends(&self) -> LayerResponse {
         let [p, m] = ENDS.map(|input| ENDS.map(|row| self.0[input][row]));
-        Ends { through: [p[0], m[1]], back: [m[0], p[1]] }
+        LayerResponse { through: [p[0], m[1]], back: [m[0], p[1]] }
     }
 }
 
@@ -235,7 +235,11 @@ impl Importance {
 
 impl Flow<'_> {
     /// Solves the equations with given sources, where leaving at the beginning and at the end scores `ends`.
-    pub fn solve(&self, source: &dyn Fn(usize, &Node) -> [f64; 2], ends: [f64; 2]) -> Importance {
+    pub fn solve(
+        &self,
+        source: &dyn Fn(usize, &RodPoint) -> [f64; 2],
+        ends: [f64; 2],
+    ) -> Importance {
         let Layers { layers, beyond } = self.layers;
         let mut inputs = vec![[0.0; 2 * ROWS]; layers.len()];
         // m₊ = ρ m₋ + η at the beginning of each layer, from the end of the rod backwards.
@@ -249,7 +253,7 @@ impl Flow<'_> {
             }
             let pairs = inputs[i].iter().zip(&layer.0);
             let [plus, minus] = ENDS.map(|row| pairs.clone().map(|(x, y)| x * y[row]).sum::<f64>());
-            let Ends { through, back } = layer.ends();
+            let LayerResponse { through, back } = layer.ends();
             emitted[i] = (minus + back[1] * eta[i + 1]) / (1.0 - back[1] * beyond[i + 1]);
             eta[i] = plus + through[0] * (eta[i + 1] + beyond[i + 1] * emitted[i]);
         }
@@ -257,7 +261,7 @@ impl Flow<'_> {
         let mut nodes = Vec::with_capacity(self.line.nodes.len());
         let mut minus = ends[0];
         for (i, layer) in layers.iter().enumerate() {
-            let (Ends { through, back }, rho) = (layer.ends(), beyond[i + 1]);
+            let (LayerResponse { through, back }, rho) = (layer.ends(), beyond[i + 1]);
             let next = emitted[i] + through[1] * minus / (1.0 - back[1] * rho);
             [inputs[i][ENDS[0]], inputs[i][ENDS[1]]] = [rho * next + eta[i + 1], minus];
             let mut values = [0.0; 2 * ROWS];

@@ -24,12 +24,12 @@ pub mod spectral;
 pub mod walk;
 
 use self::moments::Joint;
-use self::walk::Walk;
+use self::walk::RodWalk;
 use super::prediction::Covariance;
 use super::{Channel, CountDistribution, Mesh, Prediction, Tails};
 use crate::ParticleRule;
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
-use crate::problems::rod::Quantity;
+use crate::problems::rod::RodQuantity;
 use crate::problems::{Problem, Rod};
 use media::Piecewise;
 use numeric::Known;
@@ -41,18 +41,18 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let share = |field: &Piecewise| field.on(support).single_value();
     let closed = share(&rod.albedo).zip(share(&rod.forward));
     let closed = closed.and_then(|(albedo, forward)| closed::known(depth, albedo, forward, 0.0));
-    let needed = |quantity: &&Quantity| closed.is_none() || !has_closed_form(**quantity);
-    let open: Vec<Quantity> = rod.channels.iter().filter(needed).copied().collect();
+    let needed = |quantity: &&RodQuantity| closed.is_none() || !has_closed_form(**quantity);
+    let open: Vec<RodQuantity> = rod.channels.iter().filter(needed).copied().collect();
     let mut solved = Vec::new();
     if !open.is_empty() {
-        let walk = Walk::new(mesh, rod, None, ParticleRule::Analog);
+        let walk = RodWalk::new(mesh, rod, None, ParticleRule::Analog);
         solved = powers(&walk, &open, 1)?;
     }
     let mut solved = solved.into_iter();
     let known = rod.channels.iter().map(|quantity| match (closed, quantity) {
-        (Some([r, _]), Quantity::Reflected) => Some(r),
-        (Some([_, t]), Quantity::Transmitted) => Some(t),
-        (Some([r, t]), Quantity::Absorbed) => {
+        (Some([r, _]), RodQuantity::Reflected) => Some(r),
+        (Some([_, t]), RodQuantity::Transmitted) => Some(t),
+        (Some([r, t]), RodQuantity::Absorbed) => {
             // In a white rod rounding may make the rest negative.
             let rest = ((1.0 - r.value) - t.value).max(0.0);
             Some(Known { value: rest, error: r.error + t.error + f64::EPSILON, ..r })
@@ -67,8 +67,8 @@ fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
     truth(mesh, rod).unwrap_or_else(|| vec![Known::UNKNOWN; rod.channels.len()])
 }
 
-fn has_closed_form(quantity: Quantity) -> bool {
-    matches!(quantity, Quantity::Reflected | Quantity::Transmitted | Quantity::Absorbed)
+fn has_closed_form(quantity: RodQuantity) -> bool {
+    matches!(quantity, RodQuantity::Reflected | RodQuantity::Transmitted | RodQuantity::Absorbed)
 }
 
 /// Reason why a walk has no variance that draws can be compared with.
@@ -95,7 +95,7 @@ pub fn has_variance(
     sampling: &Piecewise,
     rule: ParticleRule,
 ) -> Result<(), NoVariance> {
-    let walk = Walk::new(mesh, rod, Some(sampling), rule);
+    let walk = RodWalk::new(mesh, rod, Some(sampling), rule);
     walk.exists(2)?;
     let Some(found) = powers(&walk, &rod.channels, 2) else {
         return Err(NoVariance::Unresolved(f64::INFINITY));
@@ -113,7 +113,7 @@ pub fn has_variance(
 }
 
 /// `E[X^k]` of some channels with their errors.
-fn powers(walk: &Walk<'_>, channels: &[Quantity], k: i32) -> Option<Vec<Known>> {
+fn powers(walk: &RodWalk<'_>, channels: &[RodQuantity], k: i32) -> Option<Vec<Known>> {
     walk.known(k, &|line| {
         channels
             .iter()
@@ -134,8 +134,8 @@ pub fn predict(
     with_distributions: bool,
 ) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let found = Solved::of(&Walk::new(mesh, rod, Some(sampling), rule), with_distributions);
-    let channel = |(index, (quantity, &truth)): (usize, (&Quantity, &Known))| {
+    let found = SolvedRod::of(&RodWalk::new(mesh, rod, Some(sampling), rule), with_distributions);
+    let channel = |(index, (quantity, &truth)): (usize, (&RodQuantity, &Known))| {
         let channel = match &found {
             Some(found) => found.raw[index].channel(truth, RESOLVED),
             None => Channel::unbiased(truth, None, Tails::LIGHT),
@@ -165,7 +165,7 @@ pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
 }
 
 /// Moments of all channels and of the lookups.
-struct Solved {
+struct SolvedRod {
     /// Raw moments of each channel.
     raw: Vec<RawMoments>,
     /// Factorial moments of the number of lookups.
@@ -174,14 +174,14 @@ struct Solved {
     joint: Option<Joint>,
 }
 
-impl Solved {
-    fn of(walk: &Walk<'_>, with_distributions: bool) -> Option<Self> {
+impl SolvedRod {
+    fn of(walk: &RodWalk<'_>, with_distributions: bool) -> Option<Self> {
         walk.exists(2).ok()?;
         // The first moment exists wherever the second does; the third is of no use without the fourth.
         let highest =
             [8, 4].into_iter().find(|&k| with_distributions && walk.exists(k).is_ok()).unwrap_or(2);
         let channels = &walk.rod.channels;
-        let is_joint = highest >= 4 && channels.contains(&Quantity::Absorbed);
+        let is_joint = highest >= 4 && channels.contains(&RodQuantity::Absorbed);
         let numbers = walk.known(highest, &|line| {
             let mut numbers = moments::lookups(line)?.to_vec();
             for &quantity in channels {
@@ -216,15 +216,15 @@ fn blur(found: &[Known]) -> f64 {
 
 /// The covariances of adjacent channels. A particle leaves at one end and after one number of scatterings: the
 /// products of such channels are 0.
-fn covariances(channels: &[Quantity], truth: &[Known], found: &Solved) -> Vec<Covariance> {
+fn covariances(channels: &[RodQuantity], truth: &[Known], found: &SolvedRod) -> Vec<Covariance> {
     let mut covariances = Vec::new();
     for (first, pair) in channels.windows(2).enumerate() {
         let means = [truth[first].value, truth[first + 1].value];
         let squares = [first, first + 1].map(|channel| found.raw[channel].second().value);
         let joint = match (pair, found.joint) {
-            ([Quantity::Absorbed, _], Some(joint)) => joint,
-            ([Quantity::Absorbed, _], None)
-            | ([_, Quantity::Absorbed] | [Quantity::Flux(_), _], _) => continue,
+            ([RodQuantity::Absorbed, _], Some(joint)) => joint,
+            ([RodQuantity::Absorbed, _], None)
+            | ([_, RodQuantity::Absorbed] | [RodQuantity::Flux(_), _], _) => continue,
             _ => [[0.0; 2]; 2],
         };
         let [[ab, abb], [aab, aabb]] = joint;

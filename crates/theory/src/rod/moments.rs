@@ -15,14 +15,14 @@
 //! mix: therefore the equations close.
 
 use super::line::{Importance, Line};
-use super::walk::Node;
+use super::walk::RodPoint;
 use crate::prediction::raw::binomial;
-use crate::problems::rod::Quantity;
+use crate::problems::rod::RodQuantity;
 
 /// `E[Y^j X^k]` for j, k = 1, 2, of the absorbed energy and what leaves at one end.
 pub type Joint = [[f64; 2]; 2];
 
-fn nothing(_: usize, _: &Node) -> [f64; 2] {
+fn nothing(_: usize, _: &RodPoint) -> [f64; 2] {
     [0.0; 2]
 }
 
@@ -30,15 +30,15 @@ const BEGINNING: [f64; 2] = [1.0, 0.0];
 const END: [f64; 2] = [0.0, 1.0];
 
 /// `E[X^k]` of a channel; a flux is the mean in parts of a width.
-pub fn power(line: &Line, quantity: Quantity, width: f64, k: i32) -> Option<f64> {
+pub fn power(line: &Line, quantity: RodQuantity, width: f64, k: i32) -> Option<f64> {
     let worth = match quantity {
-        Quantity::Reflected => line.flow(k)?.solve(&nothing, BEGINNING),
-        Quantity::Transmitted => line.flow(k)?.solve(&nothing, END),
-        Quantity::ReflectedBy(order) => by_order(line, k, BEGINNING, order)?,
-        Quantity::TransmittedBy(order) => by_order(line, k, END, order)?,
-        Quantity::Absorbed => score_times(line, &absorbed, k, None)?.pop()?,
-        Quantity::Flux(part) => {
-            let flux = move |node: &Node, power: i32| {
+        RodQuantity::Reflected => line.flow(k)?.solve(&nothing, BEGINNING),
+        RodQuantity::Transmitted => line.flow(k)?.solve(&nothing, END),
+        RodQuantity::ReflectedBy(order) => by_order(line, k, BEGINNING, order)?,
+        RodQuantity::TransmittedBy(order) => by_order(line, k, END, order)?,
+        RodQuantity::Absorbed => score_times(line, &absorbed, k, None)?.pop()?,
+        RodQuantity::Flux(part) => {
+            let flux = move |node: &RodPoint, power: i32| {
                 // σ̂ c = 1/width even where both c and a flight through σ̂ = 0 are infinite.
                 if node.part == part { node.sampling.powi(1 - power) } else { 0.0 }
             };
@@ -53,7 +53,7 @@ fn by_order(line: &Line, k: i32, ends: [f64; 2], order: usize) -> Option<Importa
     let flow = line.straight(k)?;
     let mut worth = flow.solve(&nothing, ends);
     for _ in 0..order {
-        let source = |i: usize, node: &Node| {
+        let source = |i: usize, node: &RodPoint| {
             let scattered = node.kernel(k).scattering();
             node.spread(worth.at(i)).map(|spread| scattered * spread)
         };
@@ -63,16 +63,16 @@ fn by_order(line: &Line, k: i32, ends: [f64; 2], order: usize) -> Option<Importa
 }
 
 /// `σ̂ c^k` of a score.
-type Score<'f> = dyn Fn(&Node, i32) -> f64 + 'f;
+type ScorePower<'f> = dyn Fn(&RodPoint, i32) -> f64 + 'f;
 
-fn absorbed(node: &Node, power: i32) -> f64 {
+fn absorbed(node: &RodPoint, power: i32) -> f64 {
     node.sampling * node.absorbed.powi(power)
 }
 
 /// `Y^i X^k` for i = 0 … j; `X^k` is the weight that leaves at one end to the power k, or 1.
 fn score_times(
     line: &Line,
-    score: &Score<'_>,
+    score: &ScorePower<'_>,
     j: i32,
     end: Option<([f64; 2], i32)>,
 ) -> Option<Vec<Importance>> {
@@ -82,7 +82,7 @@ fn score_times(
     };
     let mut found = vec![first];
     for power in 1..=j {
-        let source = |at: usize, node: &Node| {
+        let source = |at: usize, node: &RodPoint| {
             let mut sum = [0.0; 2];
             let mut ways = 1.0;
             for (i, worth) in (0_i32..).zip(&found) {
@@ -126,7 +126,7 @@ pub fn lookups_with(line: &Line, further: &dyn Fn(usize) -> [f64; 5]) -> Option<
     let flow = line.flow(0)?;
     let mut found: Vec<Importance> = Vec::new();
     for n in 1..=4_usize {
-        let source = |at: usize, node: &Node| {
+        let source = |at: usize, node: &RodPoint| {
             let worth = |m: usize| if m == 0 { [1.0; 2] } else { found[m - 1].at(at) };
             // With j or more of the further lookups, and the others afterwards.
             let further = further(at);

@@ -9,8 +9,8 @@ use num_complex::Complex64;
 
 use super::closed::{self, continued, critical, leaving};
 use super::moments;
-use super::walk::Walk;
-use crate::colours::scatterers::{Body, Divergence, Orders};
+use super::walk::RodWalk;
+use crate::colours::scatterers::{BodyEnergies, Divergence, Orders};
 use crate::problems::rod::channels;
 use crate::problems::{Problem, Rod, SpectralRod};
 use crate::{CountDistribution, Mesh, ParticleRule, colours};
@@ -46,7 +46,7 @@ impl<'a> Rods<'a> {
     }
 }
 
-impl Body for Rods<'_> {
+impl BodyEnergies for Rods<'_> {
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]> {
         closed::known(self.depth, albedo, self.rod.forward, OF_ALBEDO)
     }
@@ -70,7 +70,7 @@ impl Body for Rods<'_> {
                 [albedo, self.rod.forward].map(|x| Piecewise::constant(x, self.mesh.support()));
             let medium = self.rod.medium().clone();
             let rod = Rod::new(medium, &albedo, &forward, channels(0, false, None));
-            let walk = Walk::new(self.mesh, &rod, Some(self.sampling), ParticleRule::Analog);
+            let walk = RodWalk::new(self.mesh, &rod, Some(self.sampling), ParticleRule::Analog);
             walk.known(0, &|line| Some(moments::lookups(line)?.to_vec()))?.try_into().ok()
         };
         let each = heroes.iter().map(|&(weight, albedo)| Some((weight, of(albedo)?)));

@@ -3,7 +3,7 @@
 use super::NoVariance;
 use super::line::Line;
 use crate::collisions::particle::EventProbabilities;
-use crate::problems::rod::Quantity;
+use crate::problems::rod::RodQuantity;
 use crate::problems::{Problem, Rod};
 use crate::ray::mesh::Panel;
 use crate::{Kernel, Mesh, ParticleRule};
@@ -21,7 +21,7 @@ const OF_PATH: f64 = 128.0 * f64::EPSILON;
 
 /// A place in a rod.
 #[derive(Debug, Clone, Copy)]
-pub struct Node {
+pub struct RodPoint {
     /// σ̂.
     pub sampling: f64,
     /// `r (1 − a)`: the part of the weight that a collision absorbs.
@@ -36,7 +36,7 @@ pub struct Node {
     pub means: [f64; 2],
 }
 
-impl Node {
+impl RodPoint {
     /// Effect of a collision here on the k-th moment.
     #[inline]
     pub fn kernel(&self, k: i32) -> Kernel {
@@ -76,7 +76,7 @@ impl Node {
 }
 
 /// A walk through a rod, as theory describes it.
-pub struct Walk<'a> {
+pub struct RodWalk<'a> {
     /// The rod.
     pub rod: &'a Rod,
     sampling: Option<&'a Piecewise>,
@@ -87,9 +87,9 @@ pub struct Walk<'a> {
 }
 
 /// A list of numbers that a line yields.
-pub type Numbers<'f> = dyn Fn(&Line) -> Option<Vec<f64>> + 'f;
+pub type LineNumbers<'f> = dyn Fn(&Line) -> Option<Vec<f64>> + 'f;
 
-impl<'a> Walk<'a> {
+impl<'a> RodWalk<'a> {
     /// Cuts the rod where a, `p_f` or σ̂ has a knot and where the rule changes. Without σ̂ it is the walk of the light
     /// itself, which flies through σ_t.
     pub fn new(
@@ -102,8 +102,9 @@ impl<'a> Walk<'a> {
         cuts.extend(sampling.into_iter().flat_map(Piecewise::knots));
         let from = mesh.support().from;
         cuts.extend((1..rod.parts).map(|part| from + rod.width() * part as f64));
-        let is_order =
-            |q: &Quantity| matches!(q, Quantity::ReflectedBy(_) | Quantity::TransmittedBy(_));
+        let is_order = |q: &RodQuantity| {
+            matches!(q, RodQuantity::ReflectedBy(_) | RodQuantity::TransmittedBy(_))
+        };
         let has_orders = rod.channels.iter().any(is_order);
         let mesh = mesh.refined(&cuts, &|_, _| Vec::new());
         let walk = Self { rod, sampling, rule, has_orders, mesh };
@@ -116,7 +117,7 @@ impl<'a> Walk<'a> {
         // Added to σ̂, so that nothing but rounding is no function that no panel resolves.
         let smooth = |_: &Mesh, panel: Panel<'_>| {
             let nodes = panel.t.iter().zip(panel.extinction).map(|(&t, &sigma)| walk.at(t, sigma));
-            let nodes: Vec<Node> = nodes.collect();
+            let nodes: Vec<RodPoint> = nodes.collect();
             let of = |k: i32, event: fn(Kernel) -> f64| {
                 nodes.iter().map(|node| node.sampling * (1.0 + event(node.kernel(k)))).collect()
             };
@@ -133,7 +134,7 @@ impl<'a> Walk<'a> {
         Self { has_orders: true, ..self }
     }
 
-    fn at(&self, t: f64, extinction: f64) -> Node {
+    fn at(&self, t: f64, extinction: f64) -> RodPoint {
         let (albedo, forward) = (self.rod.albedo.value(t), self.rod.forward.value(t));
         let sampling = self.sampling.map_or(extinction, |sampling| sampling.value(t));
         // Where both vanish there are no collisions, and any finite ratio is valid.
@@ -145,7 +146,7 @@ impl<'a> Walk<'a> {
         let probabilities = self.rule.probabilities(ratio, albedo);
         let absorbed = ratio * (1.0 - albedo);
         let part = self.rod.part(t);
-        Node {
+        RodPoint {
             sampling,
             absorbed,
             part,
@@ -227,7 +228,7 @@ impl<'a> Walk<'a> {
     ///
     /// The error is the difference to the numbers of panels twice as wide, on which what leaves a panel is increased by
     /// more than rounding errors. It grows as they do next to a divergence.
-    pub fn known(&self, highest: i32, numbers: &Numbers<'_>) -> Option<Vec<Known>> {
+    pub fn known(&self, highest: i32, numbers: &LineNumbers<'_>) -> Option<Vec<Known>> {
         let found = numbers(&self.line(highest, 2, 0.0)?)?;
         let raised = numbers(&self.line(highest, 1, ROUNDING)?);
         let raised = raised.unwrap_or_else(|| vec![f64::INFINITY; found.len()]);
@@ -251,10 +252,10 @@ mod tests {
     /// Solves the equations by the implicit midpoint rule, from the beginning to the end: values in the middle of each
     /// step, and of the particle that enters.
     fn midpoint(
-        nodes: &[Node],
+        nodes: &[RodPoint],
         width: f64,
-        rates: &dyn Fn(&Node) -> [f64; 2],
-        source: &dyn Fn(usize, &Node) -> [f64; 2],
+        rates: &dyn Fn(&RodPoint) -> [f64; 2],
+        source: &dyn Fn(usize, &RodPoint) -> [f64; 2],
         ends: [f64; 2],
     ) -> (Vec<[f64; 2]>, f64) {
         let march = |mut from: [f64; 2], share: f64| {
@@ -300,36 +301,37 @@ mod tests {
         let medium = Medium::new(Arc::new(Exponential::new(1.8, 0.6)), span, span);
         let albedo = Piecewise::lines(&[0.0, 3.0], &[0.95, 0.35]);
         let forward = Piecewise::steps(&[0.0, 1.5, 3.0], &[0.8, 0.4]);
-        let channels = vec![Quantity::Absorbed, Quantity::Reflected, Quantity::Transmitted];
+        let channels =
+            vec![RodQuantity::Absorbed, RodQuantity::Reflected, RodQuantity::Transmitted];
         let rod = Rod::new(medium.clone(), &albedo, &forward, channels);
         let sampling = Piecewise::lines(&[0.0, 0.5, 3.0], &[2.5, 2.0, 0.9]);
         let walk =
-            Walk::new(&Mesh::new(medium), &rod, Some(&sampling), ParticleRule::NonTerminating);
+            RodWalk::new(&Mesh::new(medium), &rod, Some(&sampling), ParticleRule::NonTerminating);
         let known = walk.known(4, &|line| {
             let mut found = moments::lookups(line)?[..2].to_vec();
-            found.push(moments::power(line, Quantity::Reflected, 1.0, 2)?);
-            found.push(moments::power(line, Quantity::Transmitted, 1.0, 4)?);
-            found.push(moments::power(line, Quantity::Absorbed, 1.0, 1)?);
+            found.push(moments::power(line, RodQuantity::Reflected, 1.0, 2)?);
+            found.push(moments::power(line, RodQuantity::Transmitted, 1.0, 4)?);
+            found.push(moments::power(line, RodQuantity::Absorbed, 1.0, 1)?);
             Some(found)
         });
         let expected = romberg(&|steps| {
             let width = 3.0 / steps as f64;
             let at: Vec<f64> = (0..steps).map(|i| width * (i as f64 + 0.5)).collect();
             let pairs = at.iter().zip(rod.medium().extinctions(&at));
-            let nodes: Vec<Node> = pairs.map(|(&t, sigma)| walk.at(t, sigma)).collect();
-            let none = |_: usize, _: &Node| [0.0; 2];
+            let nodes: Vec<RodPoint> = pairs.map(|(&t, sigma)| walk.at(t, sigma)).collect();
+            let none = |_: usize, _: &RodPoint| [0.0; 2];
             let leaving = |k: i32, ends: [f64; 2]| {
                 midpoint(&nodes, width, &|node| node.rates(k), &none, ends).1
             };
-            let first = |_: usize, node: &Node| [node.sampling; 2];
-            let counts = |source: &dyn Fn(usize, &Node) -> [f64; 2]| {
+            let first = |_: usize, node: &RodPoint| [node.sampling; 2];
+            let counts = |source: &dyn Fn(usize, &RodPoint) -> [f64; 2]| {
                 midpoint(&nodes, width, &|node| node.rates(0), source, [0.0; 2])
             };
             let (middles, mean) = counts(&first);
-            let second = |i: usize, node: &Node| {
+            let second = |i: usize, node: &RodPoint| {
                 node.after(0, middles[i]).map(|after| 2.0 * node.sampling * after)
             };
-            let absorbed = |_: usize, node: &Node| [node.sampling * node.absorbed; 2];
+            let absorbed = |_: usize, node: &RodPoint| [node.sampling * node.absorbed; 2];
             let energy = midpoint(&nodes, width, &|node| node.rates(1), &absorbed, [0.0; 2]).1;
             let [reflected, transmitted] = [leaving(2, [1.0, 0.0]), leaving(4, [0.0, 1.0])];
             vec![mean, counts(&second).1, reflected, transmitted, energy]
@@ -361,7 +363,7 @@ mod tests {
             let medium = Medium::new(Arc::new(Constant { extinction: 1.0 }), span, span);
             let [albedo, forward, sampling] =
                 [albedo, 0.5, 0.3].map(|x| Piecewise::constant(x, span));
-            let rod = Rod::new(medium.clone(), &albedo, &forward, vec![Quantity::Transmitted]);
+            let rod = Rod::new(medium.clone(), &albedo, &forward, vec![RodQuantity::Transmitted]);
             let rule = ParticleRule::NonTerminating;
             crate::rod::has_variance(&Mesh::new(medium), &rod, &sampling, rule)
         };

@@ -4,17 +4,17 @@
 //! `−U' = f − A' U` with `U(end) = 0`, where f contains functionals that are already known.
 
 use super::camera::Losses;
-use super::scene::{Node, Scene};
+use super::scene::{RayNode, RayScene};
 use super::shadows::Among;
 use numeric::Span;
 
 /// The nodes of all panels.
 pub struct Chain<'a> {
-    scene: &'a Scene<'a>,
-    panels: Vec<Panel>,
+    scene: &'a RayScene<'a>,
+    panels: Vec<ChainPanel>,
 }
 
-struct Panel {
+struct ChainPanel {
     x: Span,
     nodes: Vec<At>,
     from: Losses,
@@ -24,7 +24,7 @@ struct Panel {
 /// A node of the chain.
 pub struct At {
     /// Quantities of the point.
-    pub node: Node,
+    pub node: RayNode,
     /// `A` there.
     pub losses: Losses,
     /// σ̂ and `w = 1 − r` there; without meaning where σ̂ is zero.
@@ -33,7 +33,7 @@ pub struct At {
 }
 
 /// A functional at every node, panel by panel, and at the beginning of the ray.
-pub struct Solved {
+pub struct SolvedChain {
     /// Values at the nodes, by panel.
     pub at: Vec<Vec<f64>>,
     /// Value at the beginning.
@@ -42,7 +42,7 @@ pub struct Solved {
 
 impl<'a> Chain<'a> {
     /// The chain on the given panels of the stretched variable, by all or half of the interpolated shadow rays.
-    pub fn new(scene: &'a Scene<'a>, panels: &[Span], among: Among) -> Self {
+    pub fn new(scene: &'a RayScene<'a>, panels: &[Span], among: Among) -> Self {
         let losses = |x: f64| scene.camera.losses(scene.stretched(x).s);
         let panel = |&x: &Span| {
             let node = |&at: &f64| {
@@ -53,7 +53,7 @@ impl<'a> Chain<'a> {
                 At { node, losses, collision, stretch: place.stretch }
             };
             let nodes = scene.rule().nodes.iter().map(node).collect();
-            Panel { x, nodes, from: losses(x.from), to: losses(x.to) }
+            ChainPanel { x, nodes, from: losses(x.from), to: losses(x.to) }
         };
         Self { scene, panels: panels.iter().map(panel).collect() }
     }
@@ -70,7 +70,7 @@ impl<'a> Chain<'a> {
         &self,
         loss: &dyn Fn(&Losses) -> f64,
         f: &dyn Fn(&At, usize, usize) -> f64,
-    ) -> Solved {
+    ) -> SolvedChain {
         let rule = self.scene.rule();
         let mut at = vec![Vec::new(); self.panels.len()];
         let mut beyond = 0.0;
@@ -82,6 +82,6 @@ impl<'a> Chain<'a> {
             let sources: Vec<f64> = panel.nodes.iter().enumerate().map(source).collect();
             (at[p], beyond) = rule.backward(&losses, loss(&panel.to) - from, &sources, beyond);
         }
-        Solved { at, begin: beyond }
+        SolvedChain { at, begin: beyond }
     }
 }

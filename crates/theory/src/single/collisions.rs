@@ -6,8 +6,8 @@
 //!
 //! c, the probability that a real collision scatters, is the albedo, or 1 where the albedo is a weight.
 
-use super::scene::{Node, Scene};
-use super::{Technique, TechniqueMoments};
+use super::scene::{RayNode, RayScene};
+use super::{ScoredDensity, TechniqueMoments};
 use crate::prediction::raw::{Raw, added, poisson};
 use media::{Medium, OpticalDepth, Piecewise};
 use numeric::{Lane, Span};
@@ -35,13 +35,13 @@ impl Collisions<'_> {
     }
 
     /// The density of scatterings.
-    pub fn density(&self, node: &Node) -> f64 {
+    pub fn density(&self, node: &RayNode) -> f64 {
         node.extinction * self.scatters * node.transmittance
     }
 
     /// Moments of draws that scatter at the first real collision.
-    pub fn points(&self, scene: &Scene) -> TechniqueMoments {
-        let technique = Technique {
+    pub fn points(&self, scene: &RayScene) -> TechniqueMoments {
+        let technique = ScoredDensity {
             density: &|node| self.density(node),
             gain: &|node| self.worth(node),
             blur: &|node| node.error[1],
@@ -52,13 +52,13 @@ impl Collisions<'_> {
     }
 
     /// Score of a scattering without its shadow ray.
-    pub fn worth(&self, node: &Node) -> f64 {
+    pub fn worth(&self, node: &RayNode) -> f64 {
         node.source / self.scatters
     }
 
     /// `E[N^k]` of a walk that scatters at a node, with its shadow ray, and of the walks that are absorbed there,
     /// per walk that scatters.
-    pub fn lookups_at(&self, node: &Node) -> Raw {
+    pub fn lookups_at(&self, node: &RayNode) -> Raw {
         let walked = added([1.0; 5], poisson(self.nulls(node.s)));
         let scattered = added(walked, node.shadow.lookups);
         let absorbed = (1.0 - self.scatters) / self.scatters;

@@ -15,8 +15,8 @@
 
 use super::null_path::NullPaths;
 use super::predict::DENSITY;
-use super::scene::{Node, Place, STEPS, Scene};
-use super::{Collisions, Technique, TechniqueMoments};
+use super::scene::{RayNode, RayScene, STEPS, StretchedPlace};
+use super::{Collisions, ScoredDensity, TechniqueMoments};
 use crate::light::Heuristic;
 use crate::light::contour::Made;
 use crate::problems::Problem;
@@ -32,7 +32,7 @@ const NEGLIGIBLE: f64 = 8.0;
 /// The two techniques.
 pub struct Mis<'a> {
     /// The ray, the light, and the transmittances of points from the light.
-    pub scene: &'a Scene<'a>,
+    pub scene: &'a RayScene<'a>,
     /// Delta tracking.
     pub collisions: Collisions<'a>,
     /// Heuristic of the weights.
@@ -50,7 +50,7 @@ impl Mis<'_> {
         }
     }
 
-    fn points_of(&self, technique: &Technique) -> TechniqueMoments {
+    fn points_of(&self, technique: &ScoredDensity) -> TechniqueMoments {
         let mut kinks = self.layers();
         kinks.extend(self.collisions.sampling.knots());
         TechniqueMoments::of(self.scene, technique, kinks)
@@ -66,7 +66,7 @@ impl Mis<'_> {
             let mut step = inwards / STEPS as f64;
             let densities = |step: f64| {
                 let (s, along) = (end + step, end + step - problem.foot());
-                let node = self.scene.node(Place { s, along, stretch: 0.0 });
+                let node = self.scene.node(StretchedPlace { s, along, stretch: 0.0 });
                 [self.collisions.density(&node), self.source(&node)]
             };
             let [mut collision, mut source] = densities(step);
@@ -86,44 +86,44 @@ impl Mis<'_> {
         cuts
     }
 
-    fn source(&self, node: &Node) -> f64 {
+    fn source(&self, node: &RayNode) -> f64 {
         self.scene.problem.equiangular_density_beyond(node.along)
     }
 
     fn by_transmittances(&self) -> [TechniqueMoments; 2] {
-        let scatters = |node: &Node| node.extinction * node.source;
-        let collision = |node: &Node| self.collisions.density(node);
-        let source = |node: &Node| self.source(node);
+        let scatters = |node: &RayNode| node.extinction * node.source;
+        let collision = |node: &RayNode| self.collisions.density(node);
+        let source = |node: &RayNode| self.source(node);
         let shared = |own: f64, other: f64| self.heuristic.shared(own, other);
-        let gain = |node: &Node| scatters(node) / shared(source(node), collision(node));
-        let walked = |node: &Node| {
+        let gain = |node: &RayNode| scatters(node) / shared(source(node), collision(node));
+        let walked = |node: &RayNode| {
             node.transmittance * (scatters(node) / shared(collision(node), source(node)))
         };
-        let blur = |node: &Node| 2.0 * (node.error[1] + DENSITY);
-        let (blur, weighted): (&dyn Fn(&Node) -> f64, _) = (&blur, None);
-        let first = Technique { density: &source, gain: &gain, blur, found: None, weighted };
+        let blur = |node: &RayNode| 2.0 * (node.error[1] + DENSITY);
+        let (blur, weighted): (&dyn Fn(&RayNode) -> f64, _) = (&blur, None);
+        let first = ScoredDensity { density: &source, gain: &gain, blur, found: None, weighted };
         let found = Some(&self.collisions);
-        let second = Technique { density: &collision, gain: &walked, blur, found, weighted };
+        let second = ScoredDensity { density: &collision, gain: &walked, blur, found, weighted };
         [first, second].map(|technique| self.points_of(&technique))
     }
 
     fn by_null_paths(&self, nulls: &NullPaths) -> [TechniqueMoments; 2] {
-        let worth = |node: &Node| self.collisions.worth(node);
-        let ratio = |node: &Node| node.extinction * self.collisions.scatters / self.source(node);
-        let by_point = |node: &Node| nulls.weights(Made::ByPoint, node.s, ratio(node));
-        let first = Technique {
+        let worth = |node: &RayNode| self.collisions.worth(node);
+        let ratio = |node: &RayNode| node.extinction * self.collisions.scatters / self.source(node);
+        let by_point = |node: &RayNode| nulls.weights(Made::ByPoint, node.s, ratio(node));
+        let first = ScoredDensity {
             density: &|node| self.source(node),
             gain: &worth,
             blur: &|_| DENSITY,
             found: None,
             weighted: Some(&by_point),
         };
-        let by_collision = |node: &Node| {
+        let by_collision = |node: &RayNode| {
             // Of all walks through σ̂ only those without a real collision reach the point.
             let found = nulls.weights(Made::ByCollision, node.s, ratio(node));
             found.map(|moments| moments.map(|moment| moment / node.transmittance))
         };
-        let second = Technique {
+        let second = ScoredDensity {
             density: &|node| self.collisions.density(node),
             gain: &worth,
             blur: &|node| node.error[1],
@@ -168,7 +168,7 @@ mod tests {
         let sampling = &Piecewise::constant(0.91, mesh.support());
         for heuristic in [Heuristic::Balance, Heuristic::Power] {
             let camera = Camera::new(&mesh, sampling, &Control::None, CameraTracking::Exact);
-            let scene = &Scene::new(&problem, camera, Tracking::Exact);
+            let scene = &RayScene::new(&problem, camera, Tracking::Exact);
             let collisions = Collisions { medium, sampling, scatters: 0.7 };
             let [light, walk] = Mis { scene, collisions, heuristic, nulls: None }.points();
             let truth = scene.radiance();

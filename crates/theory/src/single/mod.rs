@@ -32,8 +32,8 @@ pub use camera::Camera;
 pub use collisions::Collisions;
 pub use mis::Mis;
 pub use null_path::NullPaths;
-pub use predict::{Technique, TechniqueMoments};
-pub use scene::{Node, Scene};
+pub use predict::{ScoredDensity, TechniqueMoments};
+pub use scene::{RayNode, RayScene};
 pub use segment::{Segment, Tracking};
 
 /// Estimate of the transmittance from the ray's origin to a scattering point.

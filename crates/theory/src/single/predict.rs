@@ -1,7 +1,7 @@
 //! Draws that scatter at one point, or at one point of each of two techniques.
 
 use super::Collisions;
-use super::scene::{Node, Scene};
+use super::scene::{RayNode, RayScene};
 use crate::prediction::raw::{POWERS, PerPower, Raw, RawMoments, added};
 use crate::{Channel, CountDistribution, Prediction, Tails};
 use numeric::Known;
@@ -14,16 +14,16 @@ const BLURRED: f64 = 1e-2;
 pub const LOOKUPS: f64 = 1e-12;
 
 /// Moments of weights at a node, with bounds on their errors.
-pub type Weighted<'a> = dyn Fn(&Node) -> [PerPower; 2] + 'a;
+pub type Weighted<'a> = dyn Fn(&RayNode) -> [PerPower; 2] + 'a;
 
 /// Density of a scattering point, and the score at the point.
-pub struct Technique<'a> {
+pub struct ScoredDensity<'a> {
     /// The density of the point, 1/length; its integral may be below 1: then there may be no point.
-    pub density: &'a dyn Fn(&Node) -> f64,
+    pub density: &'a dyn Fn(&RayNode) -> f64,
     /// The draw without both estimated transmittances.
-    pub gain: &'a dyn Fn(&Node) -> f64,
+    pub gain: &'a dyn Fn(&RayNode) -> f64,
     /// A relative error bound of the density, and of its substitute in the gain.
-    pub blur: &'a dyn Fn(&Node) -> f64,
+    pub blur: &'a dyn Fn(&RayNode) -> f64,
     /// The delta tracking that found the point, if it did. The transmittance from the origin is then no factor of
     /// the draw, and the lookups are those of the tracking.
     pub found: Option<&'a Collisions<'a>>,
@@ -31,9 +31,9 @@ pub struct Technique<'a> {
     pub weighted: Option<&'a Weighted<'a>>,
 }
 
-impl Technique<'_> {
+impl ScoredDensity<'_> {
     /// Moments of the factor from the walk from the origin, and bounds on their errors.
-    fn camera(&self, node: &Node) -> [PerPower; 2] {
+    fn camera(&self, node: &RayNode) -> [PerPower; 2] {
         match self.weighted {
             Some(weighted) => weighted(node),
             None if self.found.is_some() => [[1.0; 5], [0.0; 5]],
@@ -68,7 +68,7 @@ const LEAST: f64 = 1e-280;
 
 impl TechniqueMoments {
     /// Moments of one technique, by panels that end at the kinks of its density and gain, too.
-    pub fn of(scene: &Scene, technique: &Technique, kinks: Vec<f64>) -> Self {
+    pub fn of(scene: &RayScene, technique: &ScoredDensity, kinks: Vec<f64>) -> Self {
         let mut parts = [MOMENT; 14];
         parts[5..9].fill(LOOKUPS);
         parts[9..].fill(f64::INFINITY);

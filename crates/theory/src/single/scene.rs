@@ -25,7 +25,7 @@ const UNRESOLVED: f64 = 1e-6;
 
 /// A point of the ray.
 #[derive(Debug, Clone, Copy)]
-pub struct Node {
+pub struct RayNode {
     /// Distance from the ray's origin.
     pub s: f64,
     /// Distance from the light's foot, with digits that `s` has lost next to the light.
@@ -44,7 +44,7 @@ pub struct Node {
     pub shadow: Segment,
 }
 
-impl Node {
+impl RayNode {
     /// Mean number of lookups of the shadow ray of a draw that scatters here.
     pub fn shadow_lookups(&self) -> f64 {
         if self.extinction > 0.0 { self.camera.through[0] * self.shadow.lookups[1] } else { 0.0 }
@@ -65,7 +65,7 @@ impl Node {
 
 /// A point of the ray, given by the stretched variable.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub struct StretchedPlace {
     /// Distance from the ray's origin.
     pub s: f64,
     /// Distance from the light's foot.
@@ -75,7 +75,7 @@ pub struct Place {
 }
 
 /// The ray, the light and the tracking of transmittances.
-pub struct Scene<'a> {
+pub struct RayScene<'a> {
     /// The problem.
     pub problem: &'a SingleScattering,
     /// The transmittance from the ray's origin.
@@ -100,7 +100,7 @@ pub struct Integral<const N: usize> {
     pub panels: Vec<Span>,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> RayScene<'a> {
     /// Joins the parts.
     pub fn new(problem: &'a SingleScattering, camera: Camera<'a>, shadow: Tracking) -> Self {
         let rule = GaussLegendre::new(16);
@@ -123,7 +123,11 @@ impl<'a> Scene<'a> {
     }
 
     /// The shadow ray from a place.
-    pub(super) fn followed(&self, Place { s, along, .. }: Place, tracking: Tracking) -> Segment {
+    pub(super) fn followed(
+        &self,
+        StretchedPlace { s, along, .. }: StretchedPlace,
+        tracking: Tracking,
+    ) -> Segment {
         let cast = self.problem.shadow_medium(s);
         let mut shadow = Segment::of_shadow(tracking, cast.as_ref(), &self.rule);
         // The shadow ray begins at s, which is rounded.
@@ -138,13 +142,13 @@ impl<'a> Scene<'a> {
     }
 
     /// Quantities at a place.
-    pub fn node(&self, place: Place) -> Node {
+    pub fn node(&self, place: StretchedPlace) -> RayNode {
         self.node_among(place, Among::All)
     }
 
     /// Quantities at a place, by all or half of the interpolated shadow rays.
-    pub fn node_among(&self, place: Place, among: Among) -> Node {
-        let Place { s, along, .. } = place;
+    pub fn node_among(&self, place: StretchedPlace, among: Among) -> RayNode {
+        let StretchedPlace { s, along, .. } = place;
         let medium = self.problem.medium();
         let depth = medium.optical_depth(Span::new(medium.support().from, s));
         let shadow = match &self.shadows {
@@ -152,7 +156,7 @@ impl<'a> Scene<'a> {
             None => self.followed(place, self.shadow),
         };
         let [source, rounding] = self.problem.source_beyond(along);
-        Node {
+        RayNode {
             s,
             along,
             extinction: medium.extinction(s),
@@ -166,10 +170,10 @@ impl<'a> Scene<'a> {
 
     /// The place at the stretched variable: `s = foot + D sinh x`, in which `1/r²` is smooth however
     /// near the light is.
-    pub fn stretched(&self, x: f64) -> Place {
+    pub fn stretched(&self, x: f64) -> StretchedPlace {
         let distance = self.problem.distance();
         let along = distance * x.sinh();
-        Place { s: self.problem.foot() + along, along, stretch: distance * x.cosh() }
+        StretchedPlace { s: self.problem.foot() + along, along, stretch: distance * x.cosh() }
     }
 
     pub(super) fn unstretched(&self, s: f64) -> f64 {
@@ -187,7 +191,7 @@ impl<'a> Scene<'a> {
         let from = medium.support().from;
         problem.radiance(|| {
             let shadows = self.interpolated(Tracking::Exact);
-            let gathered = |Place { s, along, .. }: Place, among: Among| {
+            let gathered = |StretchedPlace { s, along, .. }: StretchedPlace, among: Among| {
                 let before = medium.optical_depth(Span::new(from, s)).value;
                 let beyond = if let Some(shadows) = &shadows {
                     -shadows.at(self.unstretched_by(along), among).powers[0].ln()
@@ -230,7 +234,7 @@ impl<'a> Scene<'a> {
         x
     }
 
-    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(Place) -> [f64; N]) -> [f64; N] {
+    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(StretchedPlace) -> [f64; N]) -> [f64; N] {
         let mut sum = [0.0; N];
         for (x, weight) in self.rule.on(x) {
             let place = self.stretched(x);
@@ -246,7 +250,7 @@ impl<'a> Scene<'a> {
         &self,
         parts: [f64; N],
         mut cuts: Vec<f64>,
-        f: &dyn Fn(&Node) -> [f64; N],
+        f: &dyn Fn(&RayNode) -> [f64; N],
     ) -> Integral<N> {
         cuts.extend(self.camera.cuts());
         cuts.extend(self.shadows.iter().flat_map(|shadows| self.places(shadows)));
@@ -263,7 +267,11 @@ impl<'a> Scene<'a> {
     }
 
     /// Adds the difference to the integral by half of the shadow rays to the errors.
-    fn compare<const N: usize>(&self, found: &mut Integral<N>, f: &dyn Fn(Place) -> [f64; N]) {
+    fn compare<const N: usize>(
+        &self,
+        found: &mut Integral<N>,
+        f: &dyn Fn(StretchedPlace) -> [f64; N],
+    ) {
         let mut sums = [Sum::default(); N];
         for &x in &found.panels {
             sums.iter_mut().zip(self.panel(x, f)).for_each(|(sum, value)| sum.add(value));
@@ -278,7 +286,7 @@ impl<'a> Scene<'a> {
         &self,
         parts: [f64; N],
         cuts: Vec<f64>,
-        f: &dyn Fn(Place) -> [f64; N],
+        f: &dyn Fn(StretchedPlace) -> [f64; N],
     ) -> Integral<N> {
         if self.problem.medium().support().is_empty() {
             return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };

@@ -122,8 +122,8 @@ mod tests {
     use crate::Mesh;
     use crate::problems::single_scattering::Lamp;
     use crate::problems::{Problem, SingleScattering};
-    use crate::single::scene::Place;
-    use crate::single::{Camera, CameraTracking, Node, Scene, Tracking};
+    use crate::single::scene::StretchedPlace;
+    use crate::single::{Camera, CameraTracking, RayNode, RayScene, Tracking};
     use media::noise::Noise;
     use media::phase::{Phase, isotropic::Isotropic};
     use media::{Control, Piecewise};
@@ -149,7 +149,7 @@ mod tests {
         for tracking in [Tracking::Exact, Tracking::Ratio { sampling: 1.2, control: 0.0 }] {
             let scene = || {
                 let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
-                Scene::new(&problem, camera, tracking)
+                RayScene::new(&problem, camera, tracking)
             };
             let (exact, mut quick) = (scene(), scene());
             assert!(exact.shadows.is_none());
@@ -160,7 +160,7 @@ mod tests {
             let follow = |x: f64| exact.followed(exact.stretched(x), tracking);
             quick.shadows = Shadows::new(x, 1_000_000, follow);
             assert_eq!(quick.shadows.as_ref().expect("finite").rows.len(), 97);
-            let scattered = |node: &Node| {
+            let scattered = |node: &RayNode| {
                 let gained = node.extinction * node.transmittance * node.source;
                 let [powers @ .., _] = node.shadow.powers;
                 let [_, lookups, square, ..] = node.shadow.lookups;
@@ -186,7 +186,7 @@ mod tests {
         let mesh = Mesh::new(problem.medium().clone());
         let (sampling, control) = (Piecewise::constant(1.2, mesh.support()), Control::None);
         let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
-        let radiance = Scene::new(&problem, camera, Tracking::Exact).radiance();
+        let radiance = RayScene::new(&problem, camera, Tracking::Exact).radiance();
         let quick = crate::single::quick::radiance(&problem, 48);
         let off = (radiance.value - quick.value).abs();
         assert!(radiance.error < 1e-4 * radiance.value, "{radiance:?}");
@@ -203,14 +203,14 @@ mod tests {
         assert!(is_thinned && ends.len() <= PANELS + 1, "{}", ends.len());
         let (sampling, control) = (Piecewise::constant(1.2, mesh.support()), Control::None);
         let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
-        let scene = Scene::new(&problem, camera, Tracking::Exact);
-        let scattered = |node: &Node| [node.extinction * node.transmittance * node.source];
+        let scene = RayScene::new(&problem, camera, Tracking::Exact);
+        let scattered = |node: &RayNode| [node.extinction * node.transmittance * node.source];
         let found = scene.integrate([1e-9], Vec::new(), &scattered);
         let piece = |ends: &[f64]| {
             let rule = scene.rule();
             rule.integrate(ends[0], ends[1], |s| {
                 let along = s - problem.foot();
-                scattered(&scene.node(Place { s, along, stretch: 1.0 }))[0]
+                scattered(&scene.node(StretchedPlace { s, along, stretch: 1.0 }))[0]
             })
         };
         let exact: f64 = medium.support().cut(medium.breaks()).windows(2).map(piece).sum();

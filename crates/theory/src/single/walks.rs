@@ -7,9 +7,9 @@
 //! ```
 
 use super::camera::Losses;
-use super::chain::{At, Chain, Solved};
+use super::chain::{At, Chain, SolvedChain};
 use super::predict::{DENSITY, LOOKUPS, MOMENT, TechniqueMoments};
-use super::scene::{Node, Scene};
+use super::scene::{RayNode, RayScene};
 use super::segment::Segment;
 use super::shadows::Among;
 use crate::prediction::raw::{self, RawMoments, added, binomial, poisson, power};
@@ -33,7 +33,7 @@ pub const ORDERS: [[usize; 4]; 11] = [
 /// Raw moments on halved panels. Their errors are the difference to the moments on the panels, and the rounding of the
 /// terms, relative to the sums of their absolute values. `powers` returns moments and these sums.
 fn both(
-    scene: &Scene,
+    scene: &RayScene,
     panels: &[Span],
     rounding: f64,
     powers: impl Fn(&Chain) -> [[f64; 5]; 2],
@@ -52,7 +52,7 @@ fn both(
 const SUMS: f64 = 1e-13;
 
 /// Relative rounding error of the fourth power of the score at a node.
-fn blur(node: &Node) -> f64 {
+fn blur(node: &RayNode) -> f64 {
     4.0 * (node.error[0] + DENSITY) + node.camera.error + node.shadow.error
 }
 
@@ -77,7 +77,7 @@ struct Scattered {
 
 /// Integrates over scatterings; `at` returns the powers, the lookups and the relative rounding of a power at a
 /// node.
-fn scattered(scene: &Scene, at: impl Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
+fn scattered(scene: &RayScene, at: impl Fn(&RayNode) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);
     parts[8..].fill(f64::INFINITY);
@@ -93,14 +93,14 @@ fn scattered(scene: &Scene, at: impl Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> 
 }
 
 /// The lookups of a shadow ray, if one is cast.
-fn of_shadow(node: &Node) -> [f64; 5] {
+fn of_shadow(node: &RayNode) -> [f64; 5] {
     if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups }
 }
 
 /// Scatterings at collisions: `p = σ̂`, and the lookups are the cumulants of a compound Poisson number, moments of
 /// the lookups of each collision.
-fn scattered_at_collisions(scene: &Scene) -> Scattered {
-    scattered(scene, |node: &Node| {
+fn scattered_at_collisions(scene: &RayScene) -> Scattered {
+    scattered(scene, |node: &RayNode| {
         let [sampling, _] = scene.camera.collision(node.s, node.extinction);
         if sampling <= 0.0 {
             return ([0.0; 4], [0.0; 4], 0.0);
@@ -121,8 +121,8 @@ fn powers_of_sum(
     most: usize,
     signed: bool,
     scored: &dyn Fn(&At, f64, usize) -> f64,
-) -> Vec<Solved> {
-    let mut known: Vec<Solved> = Vec::new();
+) -> Vec<SolvedChain> {
+    let mut known: Vec<SolvedChain> = Vec::new();
     for k in 1..=most {
         let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
         let solved = chain.solve(&loss, &|at, p, i| {
@@ -139,7 +139,7 @@ fn powers_of_sum(
 }
 
 /// Moments of draws that scatter at every collision.
-pub fn at_collisions(scene: &Scene) -> TechniqueMoments {
+pub fn at_collisions(scene: &RayScene) -> TechniqueMoments {
     let Scattered { panels, lookups: cumulants, off, rounding } = scattered_at_collisions(scene);
     let of = |chain: &Chain, signed: bool| {
         let scored = |at: &At, h: f64, j: usize| power(h, j) * at.node.shadow.powers[j - 1];
@@ -161,12 +161,12 @@ pub fn at_collisions(scene: &Scene) -> TechniqueMoments {
 /// ```text
 /// E[X^k] = E[F^{k−1} G_k],  F = Σ |wᵢ| hᵢ,  G_k = Σ hᵢ |wᵢ| sgn(wᵢ)^k E[T̂_shadow(tᵢ)^k]
 /// ```
-pub fn resampled(scene: &Scene, shadow_is_free: bool) -> TechniqueMoments {
+pub fn resampled(scene: &RayScene, shadow_is_free: bool) -> TechniqueMoments {
     let Scattered { panels, rounding, .. } = scattered_at_collisions(scene);
     let powers = |chain: &Chain| {
         let f = powers_of_sum(chain, 3, false, &|_, h, j| power(h, j));
         let last = |k: usize, odd: bool| {
-            let mut g: Vec<Solved> = Vec::new();
+            let mut g: Vec<SolvedChain> = Vec::new();
             for j in 0..k {
                 let loss = |losses: &Losses| match (odd, j) {
                     (true, 1) => losses.mixed,
@@ -208,12 +208,16 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> TechniqueMoments {
 }
 
 /// Moments of draws at `count` points of a density, all with the transmittance of one walk over the whole ray.
-pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> TechniqueMoments {
-    let scored = |node: &Node, k: usize| {
+pub fn at_points(
+    scene: &RayScene,
+    count: usize,
+    density: &dyn Fn(&RayNode) -> f64,
+) -> TechniqueMoments {
+    let scored = |node: &RayNode, k: usize| {
         let p = density(node);
         p * power(node.extinction * node.source / p, k) * node.shadow.powers[k - 1]
     };
-    let found = scattered(scene, |node: &Node| {
+    let found = scattered(scene, |node: &RayNode| {
         let shadow = of_shadow(node);
         let from_first = [1, 2, 3, 4];
         let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k - 1]);
@@ -222,7 +226,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
     });
     let powers = |chain: &Chain| {
         // E[A₁^{n₁} A₂^{n₂} …] with A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds, by total degree.
-        let mut known: Vec<([usize; 4], Solved)> = Vec::new();
+        let mut known: Vec<([usize; 4], SolvedChain)> = Vec::new();
         for order in ORDERS {
             let degree: usize = order.iter().enumerate().map(|(i, n)| (i + 1) * n).sum();
             let solved = chain.solve(&|losses| losses.signed[degree], &|at, p, i| {

@@ -1,6 +1,6 @@
 //! Memos of slabs: experiments, rules and powers with equal slabs share their answers.
 
-use super::{Answer, Light, Resolution, answers};
+use super::{EnergyBounds, IncidentLight, Resolution, answers};
 use crate::Kernel;
 use crate::memo::Memo;
 use crate::problems::slab::Incidence;
@@ -9,17 +9,17 @@ use numeric::{Known, Scalar};
 
 /// Key of a slab: the label of the phase function, which contains every digit of its settings, and the bits of all
 /// numbers.
-pub(super) type Key = (String, Vec<u64>);
+pub(super) type SlabKey = (String, Vec<u64>);
 
 /// Answers to [`cached`].
-static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
+static ANSWERS: Memo<SlabKey, Option<EnergyBounds>> = Memo::new(4096);
 /// Answers for stacks of layers.
-pub(super) static STACKS: Memo<Key, Option<Vec<Answer>>> = Memo::new(1024);
+pub(super) static STACKS: Memo<SlabKey, Option<Vec<EnergyBounds>>> = Memo::new(1024);
 /// Factorial moments of the numbers of collisions in stacks of layers.
-pub(super) static COUNTS: Memo<Key, Option<Vec<[Known; 4]>>> = Memo::new(1024);
+pub(super) static COUNTS: Memo<SlabKey, Option<Vec<[Known; 4]>>> = Memo::new(1024);
 
 /// Returns the key of lights and further numbers.
-fn key(phase: &Phase, lights: &[Light], numbers: impl IntoIterator<Item = f64>) -> Key {
+fn key(phase: &Phase, lights: &[IncidentLight], numbers: impl IntoIterator<Item = f64>) -> SlabKey {
     let cosines = lights.iter().map(|light| light.cosine().unwrap_or(-1.0));
     let numbers = std::iter::once(lights.len() as f64).chain(cosines).chain(numbers);
     (phase.label(), numbers.map(f64::to_bits).collect())
@@ -28,10 +28,10 @@ fn key(phase: &Phase, lights: &[Light], numbers: impl IntoIterator<Item = f64>) 
 /// Returns the key of a stack of layers at a resolution.
 pub(super) fn of_stack<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     resolution: Resolution,
-) -> Key {
+) -> SlabKey {
     let Resolution { faintest, directions, first_layer, gains, peaked } = resolution;
     let counts = [S::TERMS, directions, peaked].map(|count| count as f64);
     let numbers = [faintest, first_layer].into_iter().chain(gains).chain(counts);
@@ -43,7 +43,7 @@ pub(super) fn of_stack<S: Scalar>(
 }
 
 /// Returns the answer; it is computed only once, also if several threads need it.
-pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
+pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<EnergyBounds> {
     let Incidence { light, phase } = incidence;
     let key = key(phase, &[*light], [depth.value, depth.error, albedo]);
     ANSWERS.get(key, || answers(phase, &[*light], depth, albedo)?.pop())

@@ -20,15 +20,15 @@
 //! Source: derived from B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::{Pieces, Resolution, Walk};
-use crate::colours::bound::{self, Flight, SecondMomentRates};
+use super::{Pieces, Resolution, SlabWalk};
+use crate::colours::bound::{self, FlightMoments, SecondMomentRates};
 use crate::colours::rates::{Proposal, Rates};
-use crate::colours::scatterers::{Body, Divergence, Orders};
+use crate::colours::scatterers::{BodyEnergies, Divergence, Orders};
 use crate::colours::{self};
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::ChromaticSlab;
 use crate::problems::channels::End;
-use crate::problems::slab::{Incidence, Light};
+use crate::problems::slab::{Incidence, IncidentLight};
 use crate::{Channel, CountDistribution, Kernel, Mesh, ParticleRule, Prediction, slab};
 use media::Piecewise;
 use media::phase::Phase;
@@ -60,14 +60,14 @@ impl Slabs<'_> {
     }
 
     /// Analog walks of several heroes, given their probabilities and albedos.
-    fn walks(&self, heroes: &[(f64, f64)]) -> impl Iterator<Item = (f64, Walk)> {
+    fn walks(&self, heroes: &[(f64, f64)]) -> impl Iterator<Item = (f64, SlabWalk)> {
         let kinks = ParticleRule::Analog.kinks(1.0);
         let pieces = Pieces::new(self.mesh, self.sampling, &kinks, &[self.incidence.light]);
         let depth = self.depth().value;
         heroes.iter().map(move |&(weight, albedo)| {
             (
                 weight,
-                Walk::analog(
+                SlabWalk::analog(
                     self.incidence,
                     albedo,
                     pieces.clone(),
@@ -93,7 +93,7 @@ fn is_isotropic(incidence: &Incidence) -> bool {
 
 /// Returns whether a slab of an optical depth has a finite answer.
 fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
-    let light = Incidence { light: Light::Diffuse, ..*incidence };
+    let light = Incidence { light: IncidentLight::Diffuse, ..*incidence };
     if is_isotropic(incidence) {
         slab::cached(&light, Known::exact(depth), albedo).is_some()
     } else {
@@ -114,7 +114,7 @@ fn critical(incidence: &Incidence, depth: f64) -> f64 {
     high
 }
 
-impl Body for Slabs<'_> {
+impl BodyEnergies for Slabs<'_> {
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]> {
         let answer = slab::cached(&self.incidence, self.depth(), albedo)?;
         Some([answer.reflected, answer.transmitted])
@@ -160,17 +160,17 @@ impl Body for Slabs<'_> {
     }
 
     fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
-        Walk::mixed_lookups(self.walks(heroes))
+        SlabWalk::mixed_lookups(self.walks(heroes))
     }
 }
 
 /// A slab with a medium for each channel.
-pub struct Spectrum<'a> {
+pub struct SlabSpectrum<'a> {
     problem: &'a ChromaticSlab,
     slabs: Vec<Slabs<'a>>,
 }
 
-impl<'a> Spectrum<'a> {
+impl<'a> SlabSpectrum<'a> {
     /// Joins the parts, mesh and σ̂ of each channel; without `with_distributions` lookups have a mean only.
     pub fn new(
         problem: &'a ChromaticSlab,
@@ -190,7 +190,7 @@ impl<'a> Spectrum<'a> {
     /// Energy that leaves a channel's slab at an end; NaN where it is unknown.
     fn truth(&self, end: End, channel: usize) -> Known {
         let found = self.slabs[channel].leaving(self.problem.colours.albedos[channel]);
-        found.map_or(slab::Answer::UNKNOWN.reflected, |found| {
+        found.map_or(slab::EnergyBounds::UNKNOWN.reflected, |found| {
             found[usize::from(end == End::Transmitted)]
         })
     }
@@ -242,10 +242,10 @@ impl<'a> Spectrum<'a> {
             return Err(f64::INFINITY);
         }
         let deep = largest * self.slabs[0].mesh.support().length();
-        let flight = |leaves: f64| Flight { leaves, collides: 1.0 - leaves };
+        let flight = |leaves: f64| FlightMoments { leaves, collides: 1.0 - leaves };
         let first = match problem.incidences[0].light {
-            Light::Collimated(cosine) => flight((-deep / cosine).exp()),
-            Light::Diffuse => flight(0.0),
+            IncidentLight::Collimated(cosine) => flight((-deep / cosine).exp()),
+            IncidentLight::Diffuse => flight(0.0),
         };
         // The mean of e^{−x/|μ|} over all directions is smallest in the middle.
         let is_isotropic = bound::are_isotropic(&problem.phases());
@@ -307,7 +307,7 @@ impl<'a> Spectrum<'a> {
         let walk = |((slab, &weight), &albedo): ((&'_ Slabs<'_>, _), _)| {
             slab.walks(&[(weight, albedo)]).collect::<Vec<_>>()
         };
-        Walk::mixed_lookups(parts.flat_map(walk))
+        SlabWalk::mixed_lookups(parts.flat_map(walk))
     }
 }
 
@@ -348,7 +348,8 @@ mod tests {
     /// own measure, and what lies between the distances.
     #[test]
     fn rates_are_nowhere_above_their_bounds() {
-        let incidence = Incidence { light: Light::Diffuse, phase: Phase::Isotropic(Isotropic) };
+        let incidence =
+            Incidence { light: IncidentLight::Diffuse, phase: Phase::Isotropic(Isotropic) };
         let walks = [
             Proposal::Hero(0),
             Proposal::Hero(1),
@@ -362,7 +363,7 @@ mod tests {
             let meshes = media.clone().map(Mesh::new);
             let flown = Piecewise::constant(majorants[0], SPAN);
             let parts = meshes.iter().map(|mesh| (mesh, &flown)).collect();
-            let spectrum = Spectrum::new(&problem, parts, false);
+            let spectrum = SlabSpectrum::new(&problem, parts, false);
             let rates = Rates { majorants, albedos };
             for (walk, channel) in walks.into_iter().flat_map(|walk| [(walk, 0), (walk, 1)]) {
                 let bounds = spectrum.largest_rates(walk, channel, 1.0);
@@ -390,7 +391,7 @@ mod tests {
     fn next_to_the_critical_albedo_nothing_is_said_to_be_infinite() {
         let peaked = HenyeyGreenstein::new(0.5).map(Phase::HenyeyGreenstein).expect("in range");
         for phase in [Phase::Isotropic(Isotropic), peaked] {
-            let incidence = Incidence { light: Light::Collimated(0.6), phase };
+            let incidence = Incidence { light: IncidentLight::Collimated(0.6), phase };
             let span = Span::new(0.0, 1.7);
             let medium = Medium::new(Arc::new(Constant { extinction: 1.0 }), span, span);
             let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(1.0, span));

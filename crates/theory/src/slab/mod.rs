@@ -36,7 +36,7 @@ pub mod walk;
 
 use self::thin::Grazing;
 use crate::Kernel;
-use crate::problems::slab::Light;
+use crate::problems::slab::IncidentLight;
 use media::phase::Phase;
 use numeric::{Known, Scalar};
 
@@ -45,7 +45,7 @@ use layer::Layer;
 
 pub use cache::cached;
 pub use pieces::{Piece, Pieces};
-pub use walk::{Existence, Walk};
+pub use walk::{Existence, SlabWalk};
 
 /// Shares of light by where it goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +62,7 @@ pub struct Shares<T> {
 pub type Energy = Shares<f64>;
 
 /// Energy with error bounds.
-pub type Answer = Shares<Known>;
+pub type EnergyBounds = Shares<Known>;
 
 impl<T> Shares<T> {
     /// Makes all shares, given a function of the accessor of each.
@@ -75,7 +75,7 @@ impl<T> Shares<T> {
     }
 }
 
-impl Answer {
+impl EnergyBounds {
     /// No answer.
     pub const UNKNOWN: Self = {
         let nothing = Known::estimated(f64::NAN, f64::INFINITY);
@@ -203,15 +203,17 @@ const MAX_DOUBLINGS: f64 = 100.0;
 /// Shares of lights on a stack of layers, from above; `None` where a share is infinite.
 pub fn solve(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel],
     resolution: Resolution,
-) -> Option<Vec<Answer>> {
+) -> Option<Vec<EnergyBounds>> {
     cache::STACKS.get(cache::of_stack(phase, lights, slices, resolution), || {
         let known = resolved(phase, lights, slices, resolution)?;
-        let answer = |(i, &light): (usize, &Light)| {
+        let answer = |(i, &light): (usize, &IncidentLight)| {
             let grazing = thin::grazing(phase, light, slices);
-            Answer::each(|of: fn(&Energy) -> &f64| known(i, 1.0, grazing, &|energy| *of(energy)))
+            EnergyBounds::each(|of: fn(&Energy) -> &f64| {
+                known(i, 1.0, grazing, &|energy| *of(energy))
+            })
         };
         Some(lights.iter().enumerate().map(answer).collect())
     })
@@ -222,7 +224,7 @@ pub fn solve(
 /// a moment is infinite.
 pub fn factorial_moments<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<[Known; 4]>> {
@@ -256,7 +258,7 @@ type Functional<'f, S> = dyn Fn(&Shares<S>) -> f64 + 'f;
 /// directions exceeds their difference by no more than a bound on what grazes.
 fn resolved<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<impl Fn(usize, f64, Grazing, &Functional<'_, S>) -> Known> {
@@ -302,7 +304,7 @@ fn resolved<S: Scalar>(
 /// ```
 fn thicker<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     [resolution, other]: [Resolution; 2],
     factor: f64,
@@ -332,7 +334,7 @@ fn thicker<S: Scalar>(
 /// Factorial moments at one resolution, see [`factorial_moments`]; their errors are those of rounding.
 fn counts<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<[Known; 4]>> {
@@ -344,7 +346,7 @@ fn counts<S: Scalar>(
 /// Shares at one resolution, without error bounds.
 pub fn energies(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel],
     resolution: Resolution,
 ) -> Option<Vec<Energy>> {
@@ -354,7 +356,7 @@ pub fn energies(
 /// Shares at a resolution that was made for the phase function.
 fn energies_at<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<Shares<S>>> {
@@ -365,7 +367,7 @@ fn energies_at<S: Scalar>(
 /// Shares for each light, and the light that would collide in a thin layer below, per optical depth of that layer.
 fn layers<S: Scalar>(
     phase: &Phase,
-    lights: &[Light],
+    lights: &[IncidentLight],
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<(Shares<S>, f64)>> {
@@ -390,8 +392,8 @@ fn layers<S: Scalar>(
     let mut found = Vec::with_capacity(lights.len());
     for light in lights {
         let share = |f: &dyn Fn(usize) -> S| match light {
-            Light::Collimated(_) => f(row),
-            Light::Diffuse => {
+            IncidentLight::Collimated(_) => f(row),
+            IncidentLight::Diffuse => {
                 let nodes = directions.weights.iter().zip(&directions.cosines).enumerate();
                 sum(&mut nodes.map(|(i, (weight, cosine))| f(i) * (2.0 * weight * cosine)))
             }
@@ -434,20 +436,25 @@ fn stack<S: Scalar>(directions: &Directions, slices: &[Kernel<S>], error: f64) -
 
 /// Reflectance and transmittance of a slab of optical depth τ and albedo a; the score is the expected
 /// number of collisions. `None` where they are infinite, which takes an albedo above 1.
-pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Option<Vec<Answer>> {
+pub fn answers(
+    phase: &Phase,
+    lights: &[IncidentLight],
+    depth: Known,
+    albedo: f64,
+) -> Option<Vec<EnergyBounds>> {
     if albedo == 0.0 {
         return Some(lights.iter().map(|&light| thin::black(light, depth)).collect());
     }
     let slice = Kernel { rate: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
     let answers = solve(phase, lights, &[slice], Resolution::FINE)?;
     let resolution = Resolution { first_layer: 1e-6, ..Resolution::FINE };
-    let is_faint = |answer: &Answer| {
+    let is_faint = |answer: &EnergyBounds| {
         [answer.reflected, answer.transmitted].iter().any(|x| depth.error > OF_DEPTH * x.value)
     };
     let colliding = (albedo <= 1.0 && answers.iter().any(is_faint))
         .then(|| layers(phase, lights, &[slice], resolution.coarser(4).of(phase)))
         .flatten();
-    let blurred = |(i, (answer, light)): (usize, (Answer, &Light))| {
+    let blurred = |(i, (answer, light)): (usize, (EnergyBounds, &IncidentLight))| {
         // A layer of optical depth δ more has light from all directions, and changes no share by more than the
         // light that collides in it.
         let steepest = light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
@@ -457,7 +464,7 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
         let shares = thin::by_orders(phase, *light, depth.value, albedo)
             .unwrap_or([answer.reflected, answer.transmitted]);
         let [reflected, transmitted] = shares.map(|known| with(known, steepest.min(below)));
-        Answer { reflected, transmitted, score: with(answer.score, steepest) }
+        EnergyBounds { reflected, transmitted, score: with(answer.score, steepest) }
     };
     Some(answers.into_iter().zip(lights).enumerate().map(blurred).collect())
 }

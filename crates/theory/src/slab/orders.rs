@@ -12,7 +12,7 @@
 //! Source: R. E. Peierls, *Critical conditions in neutron multiplication*, Mathematical Proceedings of the Cambridge
 //! Philosophical Society 35 (1939); K. M. Case, P. F. Zweifel, *Linear Transport Theory* (1967).
 
-use super::Light;
+use super::IncidentLight;
 use numeric::quadrature::GaussLegendre;
 use numeric::{Span, exponential_integrals, order};
 
@@ -91,7 +91,7 @@ impl Panels {
 
 /// The probabilities to leave a slab of an optical depth without absorption after r scatterings, reflected and
 /// transmitted; `None` where there are too many.
-pub fn orders(light: Light, depth: f64) -> Option<Vec<[f64; 2]>> {
+pub fn orders(light: IncidentLight, depth: f64) -> Option<Vec<[f64; 2]>> {
     if depth <= 0.0 || depth > DEEPEST {
         return None;
     }
@@ -107,11 +107,11 @@ pub fn orders(light: Light, depth: f64) -> Option<Vec<[f64; 2]>> {
         .map(|&(u, weight)| [u, slab.depth - u].map(|u| 0.5 * weight * exponential_integrals(u)[1]))
         .collect();
     let (unscattered, first): (f64, &dyn Fn(f64) -> f64) = match light {
-        Light::Collimated(cosine) => {
+        IncidentLight::Collimated(cosine) => {
             ((-depth / cosine).exp(), &move |u: f64| (-u / cosine).exp() / cosine)
         }
         // 2E₃ = e^{−τ} − τ E₂.
-        Light::Diffuse => {
+        IncidentLight::Diffuse => {
             let passed = (-depth).exp() - depth * exponential_integrals(depth)[1];
             (passed, &|u: f64| 2.0 * exponential_integrals(u)[1])
         }
@@ -145,7 +145,9 @@ mod tests {
     #[test]
     fn orders_sum_to_what_adding_and_doubling_says() {
         let phase = Phase::Isotropic(Isotropic);
-        for light in [Light::Collimated(0.5), Light::Collimated(1.0), Light::Diffuse] {
+        for light in
+            [IncidentLight::Collimated(0.5), IncidentLight::Collimated(1.0), IncidentLight::Diffuse]
+        {
             for depth in [0.05, 1.45, 6.0] {
                 let orders = orders(light, depth).expect("few");
                 let all: f64 = orders.iter().flatten().sum();

@@ -5,7 +5,7 @@
 //! than the mean of a layer.
 
 use crate::collisions::particle::EventProbabilities;
-use crate::problems::slab::Light;
+use crate::problems::slab::IncidentLight;
 use crate::{Kernel, Mesh};
 use media::Piecewise;
 use numeric::Span;
@@ -74,7 +74,7 @@ pub enum Pieces {
 impl Pieces {
     /// The layers of a medium under a sampling extinction, for any of the given lights. The walk's moments have
     /// kinks at some ratios.
-    pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> Self {
+    pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[IncidentLight]) -> Self {
         let cut = mesh.cut(sampling.knots());
         let mut exact: Vec<Piece> = Vec::new();
         let mut is_exact = true;
@@ -103,7 +103,12 @@ impl Pieces {
 
 /// Layers of about equal thickness, which end at the breaks of σ_t and σ̂, if these are few, and at kinks, if
 /// they are still few with them; and the same layers cut in two.
-fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> [Vec<Piece>; 2] {
+fn graded(
+    cut: &Mesh,
+    sampling: &Piecewise,
+    kinks: &[f64],
+    lights: &[IncidentLight],
+) -> [Vec<Piece>; 2] {
     let support = cut.support();
     let mut knots = cut.medium().breaks();
     knots.extend(sampling.knots());

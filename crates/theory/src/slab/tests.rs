@@ -11,7 +11,8 @@ use numeric::Span;
 use numeric::quadrature::GaussLegendre;
 use std::sync::Arc;
 
-const LIGHTS: [Light; 3] = [Light::Collimated(1.0), Light::Collimated(0.3), Light::Diffuse];
+const LIGHTS: [IncidentLight; 3] =
+    [IncidentLight::Collimated(1.0), IncidentLight::Collimated(0.3), IncidentLight::Diffuse];
 
 pub(super) fn peaked(g: f64) -> Phase {
     Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"))
@@ -86,7 +87,7 @@ fn a_forward_peak_that_is_cut_off_is_covered_by_the_error() {
 /// Without a cut, 200 directions resolve g = 0.95 to 1e-9. For g = 0.99, 144 directions confirm the error of 72.
 #[test]
 fn peaks_that_most_directions_do_not_resolve_have_answers() {
-    let lights = [Light::Collimated(1.0), Light::Diffuse];
+    let lights = [IncidentLight::Collimated(1.0), IncidentLight::Diffuse];
     let many = Resolution {
         faintest: 1.0,
         directions: 200,
@@ -154,7 +155,8 @@ fn thick_slabs_let_as_much_through_as_diffusion_says() {
 /// Draws of all these walks are in [0, 1], hence V ≤ T(1 − T), and 0 or 1 without weights: V = T(1 − T).
 #[test]
 fn the_variance_of_shares_of_thick_slabs_is_at_most_that_of_a_coin() {
-    let incidence = Incidence { light: Light::Collimated(1.0), phase: Phase::Isotropic(Isotropic) };
+    let incidence =
+        Incidence { light: IncidentLight::Collimated(1.0), phase: Phase::Isotropic(Isotropic) };
     let mut resolved = 0;
     for depth in [5.0, 40.0, 60.0, 120.0] {
         let known = Known::new(depth, f64::EPSILON * depth);
@@ -164,7 +166,7 @@ fn the_variance_of_shares_of_thick_slabs_is_at_most_that_of_a_coin() {
             for sampling in [1.0, 1.3] {
                 let pieces = Pieces::Exact(vec![Piece::of(sampling * depth, 1.0 / sampling)]);
                 let (largest_ratio, with_distributions) = (1.0 / sampling, true);
-                let walk = Walk {
+                let walk = SlabWalk {
                     incidence,
                     albedo: 0.9,
                     rule,
@@ -193,7 +195,7 @@ fn the_variance_of_shares_of_thick_slabs_is_at_most_that_of_a_coin() {
 }
 
 /// An exponential medium under a constant σ̂, cut into layers.
-fn exponential(lights: &[Light], sampling: f64) -> (Mesh, Pieces) {
+fn exponential(lights: &[IncidentLight], sampling: f64) -> (Mesh, Pieces) {
     let span = Span::new(0.0, 1.0);
     let mesh = Mesh::new(Medium::new(Arc::new(Exponential::new(10.0, 2.0)), span, span));
     let flown = Piecewise::constant(sampling, span);
@@ -209,7 +211,7 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
         let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
         let truth = answers(&incidence.phase, &[light], Known::exact(depth), albedo);
         let truth = truth.expect("finite")[0];
-        let walk = Walk {
+        let walk = SlabWalk {
             incidence,
             albedo,
             rule,
@@ -220,7 +222,7 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
         };
         (truth, walk.predict(&truth))
     };
-    for light in [Light::Collimated(0.5), Light::Diffuse] {
+    for light in [IncidentLight::Collimated(0.5), IncidentLight::Diffuse] {
         for rule in ParticleRule::ALL {
             let constant = Pieces::Exact(vec![Piece::of(28.0, 1.0 / 1.4)]);
             let (mesh, graded) = exponential(&[light], 14.0);
@@ -257,14 +259,14 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
 /// are those of a line: `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k − 1} ds`, K and A the integrals of `σ_t/μ` and `(σ̂ − σ_t)/μ`.
 #[test]
 fn lookups_are_known_where_the_ratio_varies() {
-    let light = Light::Diffuse;
+    let light = IncidentLight::Diffuse;
     let sampling = 12.0;
     let (mesh, pieces) = exponential(&[light], sampling);
     let depth = mesh.optical_depth().value;
     let (rule, with_distributions) = (ParticleRule::NonTerminating, true);
     let walk = |light, rule, albedo, pieces| {
         let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
-        Walk {
+        SlabWalk {
             incidence,
             albedo,
             rule,
@@ -281,7 +283,7 @@ fn lookups_are_known_where_the_ratio_varies() {
     assert!((both.value - 4.0 * sampling).abs() <= both.error, "{both:?}");
     assert!(both.error < 2e-3 * both.value, "{both:?}");
     let cosine = 0.5;
-    let light = Light::Collimated(cosine);
+    let light = IncidentLight::Collimated(cosine);
     let pieces = exponential(&[light], sampling).1;
     let found = walk(light, ParticleRule::Analog, 0.0, pieces).lookups(&[light]).expect("known")[0];
     let rule = GaussLegendre::new(96);

@@ -14,7 +14,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Answer, Light, orders};
+use super::{EnergyBounds, IncidentLight, orders};
 use crate::Kernel;
 use media::phase::Phase;
 use media::phase::isotropic::Isotropic;
@@ -57,7 +57,7 @@ impl Grazing {
 }
 
 /// Returns the bounds of a stack; unknown where light is scattered more than once by a thick slab.
-pub fn grazing(phase: &Phase, light: Light, slices: &[Kernel]) -> Grazing {
+pub fn grazing(phase: &Phase, light: IncidentLight, slices: &[Kernel]) -> Grazing {
     let sum =
         |of: fn(&Kernel) -> f64| -> f64 { slices.iter().map(|slice| slice.rate * of(slice)).sum() };
     let scattered = sum(|slice| slice.scattered.abs());
@@ -75,22 +75,27 @@ pub fn grazing(phase: &Phase, light: Light, slices: &[Kernel]) -> Grazing {
     Grazing {
         // Both answers, and what collides a third time.
         again: 3.0 * of_depth * scattered * again,
-        missed: if light == Light::Diffuse { missed } else { 0.0 },
+        missed: if light == IncidentLight::Diffuse { missed } else { 0.0 },
         collided: of_depth * depth,
     }
 }
 
 /// Share of light that collides in a slab, without cancellation.
-fn collided(light: Light, depth: f64) -> f64 {
+fn collided(light: IncidentLight, depth: f64) -> f64 {
     match light {
-        Light::Collimated(cosine) => -(-depth / cosine).exp_m1(),
+        IncidentLight::Collimated(cosine) => -(-depth / cosine).exp_m1(),
         // 1 − 2E₃.
-        Light::Diffuse => -(-depth).exp_m1() + depth * exponential_integrals(depth)[1],
+        IncidentLight::Diffuse => -(-depth).exp_m1() + depth * exponential_integrals(depth)[1],
     }
 }
 
 /// Shares of isotropic scattering in a thin slab of an albedo up to 1, from orders of scattering; `None` elsewhere.
-pub fn by_orders(phase: &Phase, light: Light, depth: f64, albedo: f64) -> Option<[Known; 2]> {
+pub fn by_orders(
+    phase: &Phase,
+    light: IncidentLight,
+    depth: f64,
+    albedo: f64,
+) -> Option<[Known; 2]> {
     if *phase != Phase::Isotropic(Isotropic) || depth >= THIN || albedo > 1.0 {
         return None;
     }
@@ -112,10 +117,10 @@ pub fn by_orders(phase: &Phase, light: Light, depth: f64, albedo: f64) -> Option
 /// ```text
 /// T = e^{−τ/μ₀}, or 2E₃(τ) = e^{−τ} − τE₂(τ) of diffuse light;  dT/dτ = −2E₂
 /// ```
-pub fn black(light: Light, depth: Known) -> Answer {
+pub fn black(light: IncidentLight, depth: Known) -> EnergyBounds {
     let transmitted = match light {
-        Light::Collimated(cosine) => (depth * cosine.recip()).exp_neg(),
-        Light::Diffuse => {
+        IncidentLight::Collimated(cosine) => (depth * cosine.recip()).exp_neg(),
+        IncidentLight::Diffuse => {
             let Known { value: depth, error, grade } = depth;
             let [_, second] = exponential_integrals(depth);
             let value = (-depth).exp() - depth * second;
@@ -125,7 +130,11 @@ pub fn black(light: Light, depth: Known) -> Answer {
         }
     };
     let score = Known { value: collided(light, depth.value), ..transmitted };
-    Answer { reflected: Known::new(0.0, 0.0), transmitted, score: score.blurred(f64::EPSILON) }
+    EnergyBounds {
+        reflected: Known::new(0.0, 0.0),
+        transmitted,
+        score: score.blurred(f64::EPSILON),
+    }
 }
 
 #[cfg(test)]
@@ -137,7 +146,8 @@ mod tests {
     use numeric::Span;
     use numeric::quadrature::GaussLegendre;
 
-    const LIGHTS: [Light; 3] = [Light::Collimated(1.0), Light::Collimated(0.2), Light::Diffuse];
+    const LIGHTS: [IncidentLight; 3] =
+        [IncidentLight::Collimated(1.0), IncidentLight::Collimated(0.2), IncidentLight::Diffuse];
 
     /// In the limit a slab reflects `a c β` and lets all else pass, with c = τ/μ₀ or 2τ.
     #[test]
@@ -193,7 +203,7 @@ mod tests {
             for phase in [Phase::Isotropic(Isotropic), Phase::Rayleigh(Rayleigh), peaked(0.9)] {
                 let albedo = 4.621_230_384_040_332e-10;
                 let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 1.0 };
-                let light = Light::Diffuse;
+                let light = IncidentLight::Diffuse;
                 let found = solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];
                 let exact = black(light, Known::exact(depth));
                 let slack = 2.0 * albedo * exact.score.value;
@@ -228,8 +238,8 @@ mod tests {
             let found = answers(&peaked(-0.99), &LIGHTS, Known::exact(depth), 0.0).expect("finite");
             for (light, found) in LIGHTS.iter().zip(found) {
                 let exact = match light {
-                    Light::Collimated(cosine) => (-depth / cosine).exp(),
-                    Light::Diffuse => GaussLegendre::new(64)
+                    IncidentLight::Collimated(cosine) => (-depth / cosine).exp(),
+                    IncidentLight::Diffuse => GaussLegendre::new(64)
                         .on(Span::new(0.0, 1.0))
                         .map(|(x, weight)| 4.0 * weight * x.powi(3) * (-depth / (x * x)).exp())
                         .sum(),

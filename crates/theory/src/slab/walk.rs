@@ -20,7 +20,9 @@
 //! the cost are derived here.
 
 use super::pieces::{Piece, Pieces};
-use super::{Answer, Energy, Light, Resolution, counts, energies, factorial_moments, solve};
+use super::{
+    Energy, EnergyBounds, IncidentLight, Resolution, counts, energies, factorial_moments, solve,
+};
 use crate::collisions::particle::EventProbabilities;
 use crate::prediction::raw::{POWERS, RawMoments};
 use crate::prediction::{Covariance, UNRESOLVED};
@@ -53,7 +55,7 @@ pub enum Existence {
 
 /// A walk in a slab.
 #[derive(Debug, Clone)]
-pub struct Walk {
+pub struct SlabWalk {
     /// Light and phase function.
     pub incidence: Incidence,
     /// a.
@@ -70,7 +72,7 @@ pub struct Walk {
     pub with_distributions: bool,
 }
 
-impl Walk {
+impl SlabWalk {
     /// Walk that collides by the analog rule, through σ̂ ≥ σ_t.
     pub fn analog(
         incidence: Incidence,
@@ -92,16 +94,20 @@ impl Walk {
     }
 
     /// Prediction, given the exact answer.
-    pub fn predict(&self, truth: &Answer) -> Prediction {
+    pub fn predict(&self, truth: &EnergyBounds) -> Prediction {
         let lights = [self.incidence.light];
         self.predict_all(&lights, std::slice::from_ref(truth)).swap_remove(0)
     }
 
     /// Predictions for several lights, with common computations.
-    pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
+    pub fn predict_all(
+        &self,
+        lights: &[IncidentLight],
+        truths: &[EnergyBounds],
+    ) -> Vec<Prediction> {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
         let lookups = self.lookups(lights);
-        let of = |(i, truth): (usize, &Answer)| {
+        let of = |(i, truth): (usize, &EnergyBounds)| {
             let law = lookups.as_ref().map(|lookups| CountDistribution::of_factorial(lookups[i]));
             let of_side = |side: usize| RawMoments(raw.each_ref().map(|all| all[i][side]));
             self.predicted(truth, [0, 1].map(of_side), law)
@@ -195,7 +201,7 @@ impl Walk {
     }
 
     /// `E[X_R^k]` and `E[X_T^k]` in each light; `None` where they are infinite.
-    fn powers(&self, k: i32, lights: &[Light]) -> Option<Vec<[Known; 2]>> {
+    fn powers(&self, k: i32, lights: &[IncidentLight]) -> Option<Vec<[Known; 2]>> {
         let phase = &self.incidence.phase;
         let moments = self.of_collisions(k);
         let layers = |pieces: &[Piece]| -> Vec<Kernel> {
@@ -220,7 +226,7 @@ impl Walk {
                 let coarse = solve(phase, lights, &coarse, Resolution::LAYERED)?;
                 let fine = energies(phase, lights, &fine, Resolution::LAYERED)?;
                 let pairs = coarse.into_iter().zip(fine);
-                let both = |(coarse, fine): (Answer, Energy)| {
+                let both = |(coarse, fine): (EnergyBounds, Energy)| {
                     [
                         extrapolated(coarse.reflected, fine.reflected),
                         extrapolated(coarse.transmitted, fine.transmitted),
@@ -237,7 +243,12 @@ impl Walk {
     }
 
     /// `E[X_R^k]` and `E[X_T^k]` in each light; infinite where they diverge, or are not needed.
-    fn moments(&self, k: i32, lights: &[Light], truths: &[Answer]) -> Vec<[Known; 2]> {
+    fn moments(
+        &self,
+        k: i32,
+        lights: &[IncidentLight],
+        truths: &[EnergyBounds],
+    ) -> Vec<[Known; 2]> {
         let infinite = || vec![[Known::INFINITE; 2]; lights.len()];
         if k > 4 && !self.has_tails() {
             return infinite();
@@ -249,7 +260,7 @@ impl Walk {
         if !self.is_share() {
             return found;
         }
-        let both = |(found, truth): ([Known; 2], &Answer)| {
+        let both = |(found, truth): ([Known; 2], &EnergyBounds)| {
             let [reflected, transmitted] = found;
             [of_share(reflected, truth.reflected, k), of_share(transmitted, truth.transmitted, k)]
         };
@@ -270,7 +281,7 @@ impl Walk {
     /// Prediction from the raw moments of both channels.
     fn predicted(
         &self,
-        truth: &Answer,
+        truth: &EnergyBounds,
         raw: [RawMoments; 2],
         lookups: Option<CountDistribution>,
     ) -> Prediction {
@@ -292,7 +303,7 @@ impl Walk {
 
     /// Factorial moments of the number of collisions in each light, see [`factorial_moments`], the first only without
     /// `with_distributions`; `None` where they are not known. Where r varies they are known with few directions only.
-    pub fn lookups(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
+    pub fn lookups(&self, lights: &[IncidentLight]) -> Option<Vec<[Known; 4]>> {
         let is_quick = match self.pieces {
             Pieces::Exact(_) => true,
             Pieces::Graded(_) => Resolution::LAYERED.count(&self.incidence.phase) <= MAX_DIRECTIONS,
@@ -308,7 +319,7 @@ impl Walk {
     }
 
     /// Factorial moments as the terms of series, as many as a scalar has.
-    fn counts<S: Scalar>(&self, lights: &[Light]) -> Option<Vec<[Known; 4]>> {
+    fn counts<S: Scalar>(&self, lights: &[IncidentLight]) -> Option<Vec<[Known; 4]>> {
         let phase = &self.incidence.phase;
         match &self.pieces {
             Pieces::Exact(pieces) => {

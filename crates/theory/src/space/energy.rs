@@ -46,7 +46,7 @@ const NOTHING: f64 = 1e-13;
 
 /// Input of a bound.
 #[derive(Debug, Clone, Copy)]
-pub struct Walks {
+pub struct WalkBound {
     /// Rule at a collision.
     pub rule: ParticleRule,
     /// w₀, where roulette is played.
@@ -69,7 +69,7 @@ struct Extremes {
     relative: f64,
 }
 
-impl Walks {
+impl WalkBound {
     /// The largest r, without the rounding of a majorant.
     pub fn ratio(&self) -> f64 {
         if self.largest_ratio <= 1.0 + SLACK {
@@ -235,9 +235,9 @@ fn spread_of_terminating(ratio: f64, albedo: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn walks(rule: ParticleRule, largest_ratio: f64, albedo: f64) -> Walks {
+    fn walks(rule: ParticleRule, largest_ratio: f64, albedo: f64) -> WalkBound {
         let (roulette, splits) = (None, false);
-        Walks { rule, roulette, splits, largest_ratio, albedo: [albedo; 2], depth: 1e3 }
+        WalkBound { rule, roulette, splits, largest_ratio, albedo: [albedo; 2], depth: 1e3 }
     }
 
     #[test]
@@ -271,7 +271,7 @@ mod tests {
         let thick = walks(rule, 1.3, 0.6);
         assert_eq!(thick.energy_variance(), None);
         // D = 1.3 · 1.6 − 1 = 1.08: p 1.1664 < 1 and a finite bound for p = 1/2.
-        let thin = Walks { depth: std::f64::consts::LN_2, ..thick };
+        let thin = WalkBound { depth: std::f64::consts::LN_2, ..thick };
         let expected = 0.5 * (1.1664 - 0.48f64.powi(2)) / (1.0 - 0.5 * 1.1664);
         let bound = thin.energy_variance().expect("bounded");
         assert!((bound / expected - 1.0).abs() < 1e-9, "{bound}");
@@ -288,7 +288,7 @@ mod tests {
                     if most > rule.limits(albedo[1])[1] {
                         continue;
                     }
-                    let walks = Walks { albedo, ..walks(rule, most, 0.0) };
+                    let walks = WalkBound { albedo, ..walks(rule, most, 0.0) };
                     let found = walks.extremes();
                     let mut seen = [0.0f64; 3];
                     for (i, j) in (1..=400).flat_map(|i| (0..=40).map(move |j| (i, 10 * j))) {
@@ -328,7 +328,7 @@ mod tests {
             for albedo in [0.0, 0.3, 0.9, 1.0] {
                 for largest in [0.5, 1.0, 1.05, 1.3, 1.99] {
                     for splits in [false, true] {
-                        let walks = Walks { splits, ..walks(rule, largest, albedo) };
+                        let walks = WalkBound { splits, ..walks(rule, largest, albedo) };
                         let bound = walks.energy_variance();
                         assert!(!walks.is_tame() || bound.is_some(), "{walks:?}");
                     }
@@ -342,11 +342,11 @@ mod tests {
     #[test]
     fn roulette_has_a_bound_where_weights_do_not_grow() {
         let roulette = Some(0.25);
-        let never = Walks { roulette, ..walks(ParticleRule::NonTerminating, 1.0, 0.5) };
+        let never = WalkBound { roulette, ..walks(ParticleRule::NonTerminating, 1.0, 0.5) };
         assert_eq!(never.energy_variance(), Some(0.0625));
-        let weighted = Walks { roulette, ..walks(ParticleRule::Weighted, 1.0, 0.5) };
+        let weighted = WalkBound { roulette, ..walks(ParticleRule::Weighted, 1.0, 0.5) };
         assert_eq!(weighted.energy_variance(), Some(1.0));
-        let below = Walks { roulette, ..walks(ParticleRule::NonTerminating, 1.2, 0.5) };
+        let below = WalkBound { roulette, ..walks(ParticleRule::NonTerminating, 1.2, 0.5) };
         assert_eq!(below.energy_variance(), None);
     }
 }

@@ -10,7 +10,7 @@
 //! The bound is that of any variable between 0 and b of mean m, `m (b − m)`: R. Bhatia, C. Davis, *A better bound on the
 //! variance*, American Mathematical Monthly 107 (2000).
 
-use crate::colours::bound::{self, Flight};
+use crate::colours::bound::{self, FlightMoments};
 use crate::colours::rates::{Proposal, Rates};
 use crate::prediction::raw::{POWERS, RESOLVED, RawMoments};
 use crate::problems::SpectralFurnace;
@@ -89,7 +89,7 @@ pub fn second_moment_bound(
         Bounds::Sphere { radius, .. } if shorter => radius,
         _ => diameter,
     };
-    let [first, then] = [diameter, then].map(|length| Flight::of(square.lost, length));
+    let [first, then] = [diameter, then].map(|length| FlightMoments::of(square.lost, length));
     let found = bound::largest(first, then, [square.scattered, square.absorbed]);
     // A hero may never be absorbed where another channel is.
     let is_finite = square.absorbed.is_finite();

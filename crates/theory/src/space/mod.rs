@@ -7,5 +7,5 @@ pub mod infinite;
 pub mod predict;
 pub mod sphere;
 
-pub use energy::Walks;
+pub use energy::WalkBound;
 pub use predict::energy_channel;

@@ -3,7 +3,7 @@
 //! Sums without a known or bounded variance are judged by pilot draws.
 
 use super::content;
-use super::energy::Walks;
+use super::energy::WalkBound;
 use super::infinite;
 use crate::problems::{InfiniteMedium, Lambertian, MultipleScattering};
 use crate::{Channel, CountDistribution, Moments, Prediction, Tails};
@@ -32,7 +32,7 @@ fn piloted(name: impl Into<String>, truth: Known) -> Channel {
 }
 
 /// Prediction for the energy in a furnace; without a bound on the variance only the expected value is valid.
-pub fn furnace(walks: &Walks) -> Prediction {
+pub fn furnace(walks: &WalkBound) -> Prediction {
     let bound = walks.energy_variance().unwrap_or(f64::INFINITY);
     Prediction::uncounted(energy_channel(bound, walks.depth))
 }
@@ -50,7 +50,7 @@ pub fn sky(problem: &MultipleScattering) -> Prediction {
 
 /// Channels of walks under light from all sides, in their order; collisions follow path lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Channels {
+pub struct WalkChannels {
     /// Energy.
     pub energy: bool,
     /// Path length and collisions, where nothing is absorbed.
@@ -59,7 +59,7 @@ pub struct Channels {
     pub tentative: bool,
 }
 
-impl Channels {
+impl WalkChannels {
     /// Returns whether there is a channel.
     pub fn any(self) -> bool {
         self.energy || self.white || self.tentative
@@ -75,8 +75,8 @@ pub fn held(problem: &Lambertian) -> Option<Known> {
 /// Prediction for walks under light from all sides, given `∫σ̂ dV` where it is known.
 pub fn lambertian(
     problem: &Lambertian,
-    walks: &Walks,
-    has: Channels,
+    walks: &WalkBound,
+    has: WalkChannels,
     tentative: Option<f64>,
 ) -> Prediction {
     let mut channels = Vec::new();

@@ -1,7 +1,9 @@
 //! Judgement of a stack of images on the screen: a small block of lines.
 
 use crate::judge::images::Judgement;
-use crate::judge::images::judgement::{Comparison, ComparisonMethod, Dependence, Tile, Variance};
+use crate::judge::images::judgement::{
+    ComparisonMethod, Dependence, StackComparison, Tile, Variance,
+};
 use crate::record::Verdict;
 use numeric::digits::{fixed, percent, short, signed};
 
@@ -45,7 +47,7 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
 }
 
 /// Returns the comparison of two stacks and its method.
-fn against_line(found: &Comparison) -> String {
+fn against_line(found: &StackComparison) -> String {
     let method = match found.method {
         ComparisonMethod::Permutation => format!("{} permutations of passes", found.permutations),
         ComparisonMethod::Signs => "signs of differences".to_owned(),

@@ -6,16 +6,16 @@ use crate::json;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::{Counts, Tile};
 use crate::report::ReportError;
-use crate::report::fields::{Cell, Named, Table, objects};
+use crate::report::fields::{Cell, NamedPairs, Table, objects};
 
 /// The judgement, with tiles by the columns of `tiles.csv`.
 #[derive(Serialize)]
 struct Document<'a> {
     #[serde(flatten)]
     judgement: &'a Judgement,
-    whole: Vec<Named<Cell>>,
+    whole: Vec<NamedPairs<Cell>>,
     counts: Counts,
-    worst: Vec<Named<Cell>>,
+    worst: Vec<NamedPairs<Cell>>,
 }
 
 /// Returns the judgement as a JSON object. An unknown number is `null`, and so is an object without content.
@@ -99,7 +99,7 @@ mod tests {
 
     use super::*;
     use crate::judge::images::judgement::{
-        Comparison, ComparisonMethod, Estimate, Refuted, Variance,
+        ComparisonMethod, Refuted, StackComparison, Variance, VarianceEstimate,
     };
     use crate::judge::images::{Claim, Level, Options, Size, Stack, judge};
 
@@ -131,7 +131,7 @@ mod tests {
                 is_refuted: false,
                 is_too_large: false,
             }),
-            estimate: Some(Estimate {
+            estimate: Some(VarianceEstimate {
                 passes: 2,
                 kurtosis: 3.0,
                 is_given: false,
@@ -139,7 +139,7 @@ mod tests {
                 unknown: 0,
                 first: None,
             }),
-            comparison: Some(Comparison {
+            comparison: Some(StackComparison {
                 passes: 2,
                 method: ComparisonMethod::None,
                 permutations: 0,

@@ -55,7 +55,7 @@ fn facts(judgement: &Judgement) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::images::{Claim, Level, Options, Size, Stack, judge};
+    use crate::judge::images::{Claim, ImageOptions, Level, Size, Stack, judge};
 
     #[test]
     fn a_map_of_tiles_without_a_verdict_counts_none() {
@@ -73,7 +73,7 @@ mod tests {
         let facts_of = |variance: f64| {
             let variance = Some(Level::All(variance));
             let claim = Claim { variance, ..Claim::of_truth(Level::All(0.5)) };
-            facts(&judge(&stack, &claim, &Options::default()).expect("a judgement"))
+            facts(&judge(&stack, &claim, &ImageOptions::default()).expect("a judgement"))
         };
         assert!(facts_of(0.1).contains("they are not judged"), "{}", facts_of(0.1));
     }

@@ -2,7 +2,7 @@
 //! control.
 
 use super::views::{NEEDS, SETUP};
-use super::{View, views};
+use super::{TableView, views};
 use crate::record::{Best, CaseRecord, Record, Row, Verdict};
 use crate::report::layout::{Paint, Pen, wrapped};
 use crate::report::lists::{joined, left_out};
@@ -18,17 +18,17 @@ use std::fmt::Write;
 const SUSPECTS: usize = 5;
 
 /// Adds the closing summary to a text.
-pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
-    if view == View::Run {
+pub fn write(text: &mut String, pen: Pen, record: &Record, view: TableView) {
+    if view == TableView::Run {
         suspects(text, pen, record);
         failures(text, pen, record);
     }
-    if view == View::Plan {
+    if view == TableView::Plan {
         foreseen(text, pen, &record.results.cases);
     }
     counts(text, pen, record, view);
     let mut facts = totals::control(record);
-    if view == View::Run {
+    if view == TableView::Run {
         let (seconds, threads) = (short(record.timing.seconds, 3), record.timing.threads);
         facts.push(format!("{seconds} s, threads: {threads}"));
     }
@@ -116,7 +116,7 @@ fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
     }
 }
 
-fn counts(text: &mut String, pen: Pen, record: &Record, view: View) {
+fn counts(text: &mut String, pen: Pen, record: &Record, view: TableView) {
     let cases = &record.results.cases;
     let rows = || cases.iter().flat_map(CaseRecord::rows);
     let mut counts: Vec<String> = totals::counts(cases)
@@ -129,9 +129,9 @@ fn counts(text: &mut String, pen: Pen, record: &Record, view: View) {
     if open > 0 {
         let skipped = rows().filter(|row| views::is_skipped(row, view)).count();
         let word = match view {
-            View::Run => "undecided",
-            View::Predict | View::Moments => "predicted",
-            View::Plan => "planned",
+            TableView::Run => "undecided",
+            TableView::Predict | TableView::Moments => "predicted",
+            TableView::Plan => "planned",
         };
         if open > skipped {
             counts.push(format!("{} {word}", open - skipped));

@@ -3,22 +3,22 @@
 use crate::case::sweep::SweptQuantity;
 use crate::record::{CaseRecord, Digits, Row, Verdict};
 use crate::report::fields::{Shown, Table, grid, shown};
-use crate::report::layout::{Column, Field, Paint};
-use crate::report::run::console::View;
-use crate::report::run::summary_csv::Line;
+use crate::report::layout::{Column, LayoutField, Paint};
+use crate::report::run::console::TableView;
+use crate::report::run::summary_csv::SummaryRow;
 
-const RUN: &[Shown] = shown!(Line:
+const RUN: &[Shown] = shown!(SummaryRow:
     "mean" 6, "z_mean" 1, "variance_ratio" 5, "z_variance" 2, "lookups_per_draw" 7, "z_lookups" 4,
     "predicted_kurtosis" 9, "fom" 8, "log10_ltuv" 10, "setup" 8, "needs" 9
 );
 
-const PREDICT: &[Shown] = shown!(Line:
+const PREDICT: &[Shown] = shown!(SummaryRow:
     "predicted_variance" 1, "predicted_skewness" 9, "predicted_kurtosis" 5, "predicted_lookups" 2, "setup" 3,
     "predicted_fom" 2, "predicted_log10_ltuv" 10, "stable_share" 6, "rare_event_size" 8, "best_sampling_marked" 3,
     "best_fom_marked" 4, "needs" 5
 );
 
-const MOMENTS: &[Shown] = shown!(Line:
+const MOMENTS: &[Shown] = shown!(SummaryRow:
     "loss_1", "loss_2", "loss_3", "loss_4", "relative_m2", "relative_m3", "relative_m4", "moments_error",
     "error_grade", "predicted_lookups", "lookups_spread", "lookups_error", "lookups_grade", "lookups_moments_error", "walk_lookups",
     "shadow_lookups", "covariance", "rare_event_size", "setup", "best_sampling_marked", "best_fom_marked",
@@ -26,9 +26,9 @@ const MOMENTS: &[Shown] = shown!(Line:
 );
 
 /// Columns that stand above the table if all rows share their value: draws of a plan and of a run, drawn, truth.
-const SHARED: &[Shown] = shown!(Line: "draws" 2, "draws" 10, "drawn" 3, "truth" 11);
+const SHARED: &[Shown] = shown!(SummaryRow: "draws" 2, "draws" 10, "drawn" 3, "truth" 11);
 
-const PLAN: &[Shown] = shown!(Line:
+const PLAN: &[Shown] = shown!(SummaryRow:
     "needed" 1, "predicted_lookups" 2, "setup" 3, "needs" 5, "skipped" 3
 );
 
@@ -60,28 +60,28 @@ pub fn names(case: &CaseRecord, rows: &[Row], labels: Digits) -> Vec<Column> {
 }
 
 /// Returns the columns about the results of the rows, empty ones included.
-pub fn columns(lines: &[Line], view: View) -> Vec<Column> {
+pub fn columns(lines: &[SummaryRow], view: TableView) -> Vec<Column> {
     let rows: Vec<Row> = lines.iter().map(|line| line.row).collect();
     let mut shown: Vec<Shown> = Vec::new();
     if !view.is_theory() && shared(&rows, |row| row.experiment.draws).is_none() {
-        shown.push(SHARED[usize::from(view != View::Plan)]);
+        shown.push(SHARED[usize::from(view != TableView::Plan)]);
     }
-    if view == View::Run && shared(&rows, |row| row.experiment.drawn).is_none() {
+    if view == TableView::Run && shared(&rows, |row| row.experiment.drawn).is_none() {
         shown.push(SHARED[2]);
     }
-    if view != View::Plan && shared(&rows, |row| row.truth).is_none() {
+    if view != TableView::Plan && shared(&rows, |row| row.truth).is_none() {
         shown.push(SHARED[3]);
     }
     shown.extend(match view {
-        View::Run => RUN,
-        View::Predict => PREDICT,
-        View::Moments => MOMENTS,
-        View::Plan => PLAN,
+        TableView::Run => RUN,
+        TableView::Predict => PREDICT,
+        TableView::Moments => MOMENTS,
+        TableView::Plan => PLAN,
     });
     let has_channels = rows.iter().any(|row| !row.channel.is_empty());
-    shown.retain(|column| has_channels || !Line::NAMES[column.place].ends_with("ltuv"));
+    shown.retain(|column| has_channels || !SummaryRow::NAMES[column.place].ends_with("ltuv"));
     let mut columns = grid(lines, &shown).columns;
-    let head = if view == View::Run { "verdict" } else { "status" };
+    let head = if view == TableView::Run { "verdict" } else { "status" };
     let fields = rows.iter().map(|row| status(row, view)).collect();
     columns.push(Column { head, right: false, rank: 0, fields });
     columns
@@ -129,20 +129,22 @@ pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Digits) -> String {
 }
 
 /// Returns whether a row is planned but neither drawn nor refused, for a reason.
-pub fn is_skipped(row: &Row, view: View) -> bool {
-    view == View::Plan
+pub fn is_skipped(row: &Row, view: TableView) -> bool {
+    view == TableView::Plan
         && row.verdict.is_none()
         && row.experiment.draws.is_none()
         && !row.reason().is_empty()
 }
 
 /// Returns the word for the result of a row.
-pub fn status(row: &Row, view: View) -> Field {
+pub fn status(row: &Row, view: TableView) -> LayoutField {
     let foreseen = || row.foreseen.as_ref().map(|foreseen| foreseen.verdict);
     match row.verdict.or_else(foreseen) {
-        Some(verdict) => Field { text: verdict.word().to_owned(), paint: paint(verdict) },
-        None if is_skipped(row, view) => Field { text: "skipped".to_owned(), paint: Paint::Dim },
-        None => Field::plain(String::new()),
+        Some(verdict) => LayoutField { text: verdict.word().to_owned(), paint: paint(verdict) },
+        None if is_skipped(row, view) => {
+            LayoutField { text: "skipped".to_owned(), paint: Paint::Dim }
+        }
+        None => LayoutField::plain(String::new()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Details of an experiment, which open below it: its numbers, the path of the evidence, its plots, and how to repeat it.
 
 use crate::report::html::template::{Markup, html};
-use checks::check::Found;
+use checks::check::CheckResult;
 use gate::CheckId;
 
 use super::sparks;
@@ -12,11 +12,11 @@ use crate::report::html::drawing::Plot;
 use crate::report::html::words;
 use crate::report::lists::joined;
 use crate::report::run::failures;
-use crate::report::run::summary_csv::Line as Joined;
+use crate::report::run::summary_csv::SummaryRow as Joined;
 use gate::deviation::signed_percent;
 
 /// Content of the page that all rows share.
-pub struct Shown<'a> {
+pub struct SharedContent<'a> {
     /// Seed of the run.
     pub seed: u64,
     /// Plots of each case.
@@ -25,7 +25,7 @@ pub struct Shown<'a> {
     pub fields: Vec<Field<Joined<'a>>>,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> SharedContent<'a> {
     /// Returns a row with the seed of the run.
     pub fn line(&self, row: Row<'a>) -> Joined<'a> {
         Joined { row, seed: self.seed }
@@ -39,7 +39,7 @@ const FACTS: &[Column] = shown!(Joined:
 );
 
 /// Returns everything that is known of a row of the case with this number.
-pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
+pub fn of<'a>(row: &Row<'a>, shown: &SharedContent<'a>, place: usize) -> Markup {
     let findings: Vec<&Finding> = row.findings().collect();
     html! {
         @if !row.reason().is_empty() { p.reason { (row.reason()) } }
@@ -59,21 +59,21 @@ pub fn of<'a>(row: &Row<'a>, shown: &Shown<'a>, place: usize) -> Markup {
 }
 
 /// Returns further fields that are known, with their texts.
-fn facts<'a>(row: &Row<'a>, shown: &Shown<'a>) -> Vec<(&'static str, String)> {
+fn facts<'a>(row: &Row<'a>, shown: &SharedContent<'a>) -> Vec<(&'static str, String)> {
     let line = shown.line(*row);
     let all = FACTS.iter().map(|column| &shown.fields[column.place]);
     all.map(|field| (field.head, field.text(&line))).filter(|(_, text)| text != "0").collect()
 }
 
 /// Line of the table of numbers.
-struct Line<'a> {
+struct NumberLine<'a> {
     name: &'static str,
     values: Compared,
     z: String,
     finding: Option<&'a Finding>,
 }
 
-impl Line<'_> {
+impl NumberLine<'_> {
     /// Returns the measured value minus that of theory in percent; empty if one is unknown.
     fn difference(&self) -> String {
         let Compared { measured, theory, .. } = self.values;
@@ -136,7 +136,7 @@ fn numbers(row: &Row) -> Markup {
 }
 
 /// Returns mean, variance and lookups, which every experiment has, and the figure of merit, as far as they are known.
-fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
+fn lines<'a>(row: &Row<'a>) -> Vec<NumberLine<'a>> {
     let found =
         |score: Score| row.findings().find(|one| one.check == score.check() && !one.expects_bias);
     let of_score = |score| {
@@ -147,25 +147,25 @@ fn lines<'a>(row: &Row<'a>) -> Vec<Line<'a>> {
             Score::Lookups => "lookups per draw",
         };
         let z = Print::Signed.text(&Cell::Score(values.z, row.is_normal(score)));
-        Line { name, values, z, finding: found(score) }
+        NumberLine { name, values, z, finding: found(score) }
     };
     let has_setup = row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0);
     let (measured, theory) = (row.fom, row.predicted_fom);
-    let merit = Line {
+    let merit = NumberLine {
         name: if has_setup { "1/(V · (lookups + setup/n))" } else { "1/(V · lookups)" },
         values: Compared { measured, deviation: None, theory, z: None },
         z: String::new(),
         finding: None,
     };
     let lines = Score::ALL.into_iter().map(of_score).chain([merit]);
-    let is_known = |line: &Line| {
+    let is_known = |line: &NumberLine| {
         let numbers = [line.values.measured, line.values.theory];
         line.finding.is_some() || numbers.into_iter().flatten().any(f64::is_finite)
     };
     lines.filter(is_known).collect()
 }
 
-fn numbers_of(line: &Line) -> Markup {
+fn numbers_of(line: &NumberLine) -> Markup {
     html! { tr {
         th { (line.name) }
         td { (words::number(line.values.measured, 7)) }
@@ -179,7 +179,7 @@ fn numbers_of(line: &Line) -> Markup {
 
 /// Returns the verdict of a check and its grounds.
 fn says(finding: &Finding) -> Markup {
-    let Found { verdict, gate, .. } = &finding.found;
+    let CheckResult { verdict, gate, .. } = &finding.found;
     let number = |value| words::number(Some(value), 4);
     html! {
         td class={ "verdict " (verdict.word()) } { (words::verdict(Some(*verdict))) }

@@ -2,17 +2,17 @@
 
 use crate::report::html::template::{Markup, html};
 
-use super::details::{self, Shown};
+use super::details::{self, SharedContent};
 use super::sparks;
 use crate::record::{Record, Row};
 use crate::report::fields::{Shown as Column, shown};
 use crate::report::html::listing::{self, Choice};
 use crate::report::html::words;
-use crate::report::run::summary_csv::Line;
+use crate::report::run::summary_csv::SummaryRow;
 use crate::report::run::totals::{NOT_NORMAL, VERDICTS};
 
 /// Fields beside the verdict and the experiment. The page's style leaves some out on narrow screens.
-const COLUMNS: &[Column] = shown!(Line:
+const COLUMNS: &[Column] = shown!(SummaryRow:
     "mean", "truth", "z_mean", "z_variance", "z_lookups", "largest_ln_e", "detectable_bias", "drawn"
 );
 
@@ -21,7 +21,7 @@ const VERDICT: &str = "Worst result of all checks of the experiment. Sorted by s
 const EXPERIMENT: &str = "Case, estimator, sampling extinction σ̂, control, swept value, channel";
 
 /// Returns the table with its filters.
-pub fn section<'a>(record: &'a Record, shown: &Shown<'a>) -> Markup {
+pub fn section<'a>(record: &'a Record, shown: &SharedContent<'a>) -> Markup {
     let rows: Vec<(usize, Row)> = record
         .results
         .cases
@@ -57,7 +57,7 @@ pub fn section<'a>(record: &'a Record, shown: &Shown<'a>) -> Markup {
 }
 
 /// Returns the meanings of all verdicts and columns.
-pub fn legend(record: &Record, shown: &Shown) -> Markup {
+pub fn legend(record: &Record, shown: &SharedContent) -> Markup {
     let gate = &record.results.gate;
     let limit = |limit| words::number(Some(limit), 3);
     html! {

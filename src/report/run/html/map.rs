@@ -11,7 +11,7 @@ use crate::report::lists::grouped;
 const CROWD: usize = 30;
 
 /// Line of the map: experiments of one estimator of a case.
-struct Line<'a> {
+struct MapLine<'a> {
     label: String,
     cells: Vec<&'a ExperimentRecord>,
 }
@@ -27,7 +27,7 @@ pub struct Map {
 /// Returns the map of a run.
 pub fn map(record: &Record) -> Map {
     let cases = &record.results.cases;
-    let all: Vec<Vec<Line>> = cases.iter().map(lines).collect();
+    let all: Vec<Vec<MapLine>> = cases.iter().map(lines).collect();
     let is_dense = all.iter().map(Vec::len).sum::<usize>() > CROWD;
     let mut last = "";
     // Cases of a folder stand together.
@@ -62,12 +62,12 @@ fn folder_and_name(case: &CaseRecord) -> (&str, &str) {
 }
 
 /// Returns the experiments of a case by estimator, each in the order of the sweep.
-fn lines(case: &CaseRecord) -> Vec<Line<'_>> {
+fn lines(case: &CaseRecord) -> Vec<MapLine<'_>> {
     let listed = grouped(&case.experiments, |one, other| one.listed == other.listed);
     let lines = listed.into_iter().map(|cells| {
         let control = &cells[0].id.control;
         let comma = if control.is_empty() { "" } else { ", control " };
-        Line { label: format!("{}{comma}{control}", cells[0].label), cells }
+        MapLine { label: format!("{}{comma}{control}", cells[0].label), cells }
     });
     lines.collect()
 }

@@ -12,21 +12,21 @@ use numeric::digits::{count, short};
 const SIZE: [f64; 2] = [400.0, 120.0];
 
 /// Range of the plot of evidence, in units of its limit.
-const EVIDENCE: View = View { x: [0.0, 1.0], y: [-1.2, 1.2] };
+const EVIDENCE: PlotView = PlotView { x: [0.0, 1.0], y: [-1.2, 1.2] };
 
 /// Line: its name and its points.
-struct Line {
+struct SparkLine {
     name: String,
     points: Vec<[f64; 2]>,
 }
 
 /// Part of the plane that is shown.
-struct View {
+struct PlotView {
     x: [f64; 2],
     y: [f64; 2],
 }
 
-impl View {
+impl PlotView {
     /// Returns the place of a point on the plot, in whole units.
     fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let share = |v: f64, [low, high]: [f64; 2]| {
@@ -70,16 +70,16 @@ pub fn evidence(findings: &[&Finding]) -> Markup {
     let line = |finding: &Finding| {
         let limit = finding.gate?.ln_e_limit;
         let point = |&[draws, ln_e]: &[f64; 2]| [draws.log10(), ln_e / limit];
-        Some(Line {
+        Some(SparkLine {
             name: finding.check.to_string(),
             points: finding.path.iter().map(point).collect(),
         })
     };
-    let lines: Vec<Line> = asked.filter_map(line).collect();
+    let lines: Vec<SparkLine> = asked.filter_map(line).collect();
     if lines.is_empty() {
         return html! {};
     }
-    let view = View { x: [first, last].map(f64::log10), ..EVIDENCE };
+    let view = PlotView { x: [first, last].map(f64::log10), ..EVIDENCE };
     let caption = format!("ln E from look to look, {} to {} draws: ", draws(first), draws(last));
     let marks = html! { use href="#ground" {} };
     figure("ln E from look to look", &caption, &marks, &lines, (&view, "draws"))
@@ -90,15 +90,15 @@ pub fn course(course: &Course) -> Markup {
     let fields =
         [("σ_t", &course.extinction), ("control", &course.control), ("σ\u{302}", &course.sampling)];
     let points = |field: &[f64]| course.t.iter().zip(field).map(|(&t, &v)| [t, v]).collect();
-    let lines: Vec<Line> = fields
+    let lines: Vec<SparkLine> = fields
         .iter()
         .filter(|(_, field)| !field.is_empty())
-        .map(|(name, field)| Line { name: (*name).to_owned(), points: points(field) })
+        .map(|(name, field)| SparkLine { name: (*name).to_owned(), points: points(field) })
         .collect();
     let values = lines.iter().flat_map(|line| line.points.iter().map(|point| point[1]));
     let [low, high] = ends(values);
     let [from, to] = ends(course.t.iter().copied());
-    let view = View { x: [from, to], y: [low.min(0.0), high] };
+    let view = PlotView { x: [from, to], y: [low.min(0.0), high] };
     let place =
         course.at.map_or_else(String::new, |at| format!("; it fails at t = {}", short(at, 4)));
     let names = joined(lines.iter().map(|line| &line.name), ", ");
@@ -116,8 +116,8 @@ fn figure(
     label: &str,
     caption: &str,
     marks: &Markup,
-    lines: &[Line],
-    (view, along): (&View, &str),
+    lines: &[SparkLine],
+    (view, along): (&PlotView, &str),
 ) -> Markup {
     let ends = [view.x, view.y].concat().into_iter().map(|end| short(end, 4));
     let range = joined(ends.chain([along.to_owned()]), " ");

@@ -5,8 +5,8 @@
 use crate::record::{Best, Compared, CurvePoint, Row};
 use crate::report::lists::joined;
 use crate::report::plots::Panel;
-use crate::report::plots::legend::{self, Key};
-use crate::report::plots::overlap::{self, Class, Line, classes, side_by_side, smallest_step};
+use crate::report::plots::legend::{self, MarkerKey};
+use crate::report::plots::overlap::{self, Class, PlotLine, classes, side_by_side, smallest_step};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{DARK, Marker, PAPER};
 use crate::report::run::fields;
@@ -25,7 +25,7 @@ const APART: f64 = 8.0;
 
 /// Quantity of a panel, of rows and of curves.
 #[derive(Clone, Copy)]
-pub struct Quantity {
+pub struct PanelQuantity {
     /// Heading; its second character is the letter of the panel.
     pub head: &'static str,
     /// Title of the axis.
@@ -37,7 +37,7 @@ pub struct Quantity {
 }
 
 /// Measured point: its series, its place, and the ends of its error bar about it.
-struct Point {
+struct MeasuredPoint {
     series: usize,
     spot: [f64; 2],
     bar: Option<[f64; 3]>,
@@ -49,17 +49,17 @@ pub struct Graph {
     /// The panel.
     pub panel: Panel,
     head: &'static str,
-    lines: Vec<Line>,
+    lines: Vec<PlotLine>,
     classes: Vec<Class>,
-    points: Vec<Point>,
+    points: Vec<MeasuredPoint>,
     /// True if points were moved aside.
     is_moved: bool,
 }
 
 impl Graph {
     /// Lays out a quantity of the series in a panel.
-    pub fn new(panel: Panel, quantity: Quantity, series: &[Series]) -> Self {
-        let lines: Vec<Line> = series.iter().map(|one| line(one, &quantity, &panel)).collect();
+    pub fn new(panel: Panel, quantity: PanelQuantity, series: &[Series]) -> Self {
+        let lines: Vec<PlotLine> = series.iter().map(|one| line(one, &quantity, &panel)).collect();
         let mut points = points(&panel, &quantity, series);
         let spots: Vec<[f64; 2]> = points.iter().map(|point| point.spot).collect();
         let swept = points.iter().filter(|point| !series[point.series].is_fixed());
@@ -81,18 +81,18 @@ impl Graph {
                 let style = series[member].style;
                 let dash = class.dash(member, style.dash);
                 match &self.lines[member] {
-                    Line::Points(points) => {
+                    PlotLine::Points(points) => {
                         panel.line(sheet, points.iter().copied(), (&dash, 2.0, style.colour));
                     }
-                    Line::Level(y) => {
+                    PlotLine::Level(y) => {
                         let across = [panel.x.low, panel.x.high].map(|x| (x, *y));
                         panel.line(sheet, across, (&dash, 1.6, style.colour));
                     }
-                    Line::None => {}
+                    PlotLine::None => {}
                 }
             }
         }
-        for Point { series: of, spot, bar, tip } in &self.points {
+        for MeasuredPoint { series: of, spot, bar, tip } in &self.points {
             sheet.tip(*spot, tip.clone());
             let style = series[*of].style;
             // A bar within its marker cannot be seen.
@@ -115,9 +115,9 @@ impl Graph {
     pub fn write_names(&self, face: &Typeface, sheet: &mut Sheet, series: &[Series]) {
         let courses = series.iter().enumerate().map(|(index, one)| {
             let of_line: Vec<(f64, f64)> = match &self.lines[index] {
-                Line::Points(points) => points.clone(),
-                Line::Level(y) => [self.panel.x.low, self.panel.x.high].map(|x| (x, *y)).into(),
-                Line::None => Vec::new(),
+                PlotLine::Points(points) => points.clone(),
+                PlotLine::Level(y) => [self.panel.x.low, self.panel.x.high].map(|x| (x, *y)).into(),
+                PlotLine::None => Vec::new(),
             };
             let of_line = of_line.iter().filter_map(|&(x, y)| self.panel.spot(x, y));
             let own = self.points.iter().filter(|point| point.series == index);
@@ -163,22 +163,22 @@ pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
 }
 
 /// Returns the predicted line within the panel: along the sweep, or a constant for an estimator that is not swept.
-fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
+fn line(one: &Series, quantity: &PanelQuantity, panel: &Panel) -> PlotLine {
     let points = one.theory(quantity.theory, quantity.values);
     if !points.is_empty() {
         let has_place = points.iter().any(|&(x, y)| panel.spot(x, y).is_some());
-        return if has_place { Line::Points(points) } else { Line::None };
+        return if has_place { PlotLine::Points(points) } else { PlotLine::None };
     }
     let mut fixed = one.rows.iter().filter(|row| row.experiment.swept().is_none());
     let level = fixed.find_map(|row| {
         let Compared { measured, theory, .. } = (quantity.values)(row);
         theory.or(measured)
     });
-    level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
+    level.filter(|&y| panel.down(y).is_some()).map_or(PlotLine::None, PlotLine::Level)
 }
 
 /// Returns the measured points; estimators that are not swept have places at the right edge.
-fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
+fn points(panel: &Panel, quantity: &PanelQuantity, series: &[Series]) -> Vec<MeasuredPoint> {
     let mut edge = panel.right - 9.0;
     let mut points = Vec::new();
     for (index, one) in series.iter().enumerate() {
@@ -195,14 +195,14 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
             let tip = tip(row, quantity, values);
             let bar =
                 values.deviation.map(|deviation| [value - deviation, value, value + deviation]);
-            points.push(Point { series: index, spot, bar, tip });
+            points.push(MeasuredPoint { series: index, spot, bar, tip });
         }
     }
     points
 }
 
 /// Returns the name and the value of a point, with its standard error and its value in theory.
-fn tip(row: &Row, quantity: &Quantity, values: Compared) -> String {
+fn tip(row: &Row, quantity: &PanelQuantity, values: Compared) -> String {
     let Compared { measured, deviation, theory, .. } = values;
     let [value, deviation, theory] =
         [measured, deviation, theory].map(|value| value.map(|value| short(value, 4)));
@@ -239,11 +239,11 @@ pub fn draw_optima(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[
             filled = true;
         }
     }
-    let key = |is_hollow, words| Key { marker: Marker::Star, is_hollow, words };
+    let key = |is_hollow, words| MarkerKey { marker: Marker::Star, is_hollow, words };
     let keys = [(filled, false, "predicted optimum"), (hollow, true, "90 % of the limit")];
     let keys =
         keys.into_iter().filter(|known| known.0).map(|(_, hollow, words)| key(hollow, words));
-    let keys: Vec<Key> = keys.collect();
+    let keys: Vec<MarkerKey> = keys.collect();
     legend::keys(face, sheet, [panel.right, panel.top - 15.0], &keys);
 }
 

@@ -4,7 +4,9 @@ mod command;
 mod references;
 
 use trueflight::judge::images::against::{Terms, compare};
-use trueflight::judge::images::{Claim, Judgement, Level, Options, Picture, Size, Stack, judge};
+use trueflight::judge::images::{
+    Claim, ImageOptions, Judgement, Level, Picture, Size, Stack, judge,
+};
 use trueflight::rng::{Address, unit};
 use trueflight::stats::normal::upper_quantile;
 use trueflight::stats::verdict::Verdict;
@@ -108,7 +110,7 @@ fn by_image(seed: u64, passes: usize, law: Law) -> Claim {
 }
 
 fn judged(stack: &Stack, claim: &Claim, alpha: f64) -> Judgement {
-    judge(stack, claim, &Options { alpha, ..Options::default() }).expect("a judgement")
+    judge(stack, claim, &ImageOptions { alpha, ..ImageOptions::default() }).expect("a judgement")
 }
 
 /// 5 distributions, 3 numbers of passes, 20 stacks each, at α = 0.05: 300 · 0.05 = 15 on average if the level were
@@ -139,7 +141,7 @@ fn wrong_renderers_are_found_by_an_estimated_variance() {
         let found = judge(
             &stack(2, 512, law, tile),
             &claim,
-            &Options { tile: Some(8), ..Options::default() },
+            &ImageOptions { tile: Some(8), ..ImageOptions::default() },
         )
         .expect("a judgement");
         assert_eq!(found.verdict, Verdict::Fail, "{law:?}: {}", found.reason);
@@ -203,7 +205,8 @@ fn negative_and_missing_variances_are_counted_and_zeros_fail_nothing() {
     (variance[30], variance[31], variance[50]) = (-0.1, -0.2, f64::NAN);
     let level = Some(image(|pixel| variance[pixel]));
     let claim = Claim { variance: level, ..Claim::of_truth(image(truth)) };
-    let error = judge(&honest(9, 16, law), &claim, &Options::default()).expect_err("it is exact");
+    let error =
+        judge(&honest(9, 16, law), &claim, &ImageOptions::default()).expect_err("it is exact");
     assert!(error.to_string().contains("--variance-passes N"), "{error}");
     let claim = Claim { variance_passes: Some(8), ..claim };
     for seed in 0..10 {
@@ -226,7 +229,8 @@ fn images_without_spread_are_compared_as_they_are() {
     // A stack that is too bright is off; one that is too dark may have missed rare bright values.
     assert_eq!(judged(&flat(0.6), &claim, 1e-3).verdict, Verdict::Fail);
     assert_eq!(judged(&flat(0.4), &claim, 1e-3).verdict, Verdict::Inconclusive);
-    let against = |x: f64| compare(&flat(x), &flat(0.5), Terms::default(), &Options::default());
+    let against =
+        |x: f64| compare(&flat(x), &flat(0.5), Terms::default(), &ImageOptions::default());
     assert_eq!(against(0.5).expect("a judgement").verdict, Verdict::Pass);
     assert_ne!(against(0.6).expect("a judgement").verdict, Verdict::Pass);
 }
@@ -245,7 +249,7 @@ fn images_of_the_passes_judged_are_no_grounds() {
     let found = judged(&stack, &claim, 1e-3);
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("the mean of these very passes"), "{}", found.reason);
-    let found = compare(&stack, &stack, Terms::default(), &Options::default()).expect("one");
+    let found = compare(&stack, &stack, Terms::default(), &ImageOptions::default()).expect("one");
     assert_eq!(found.verdict, Verdict::Inconclusive);
     assert!(found.reason.contains("share values"), "{}", found.reason);
     let claim = Claim { variance_stack: Some(stack.clone()), ..Claim::of_truth(image(truth)) };
@@ -253,7 +257,8 @@ fn images_of_the_passes_judged_are_no_grounds() {
     assert!(found.reason.contains("share values"), "{}", found.reason);
     // Passes with only two values, 0 and 20, are enough evidence.
     let coins = |seed| honest(seed, 8, Law::Rare(0.05));
-    let found = compare(&coins(1), &coins(1), Terms::default(), &Options::default()).expect("one");
+    let found =
+        compare(&coins(1), &coins(1), Terms::default(), &ImageOptions::default()).expect("one");
     assert!(found.reason.contains("share values"), "{}", found.reason);
 }
 
@@ -278,11 +283,11 @@ fn a_pass_by_a_wide_tolerance_says_so() {
     let law = Law::Normal;
     let variance = Some(image(move |pixel| law.variance() * truth(pixel) * truth(pixel)));
     let claim = Claim { variance, ..Claim::of_truth(image(truth)) };
-    let wanted = Options { tolerance: Some(0.06), tile: Some(8), ..Options::default() };
+    let wanted = ImageOptions { tolerance: Some(0.06), tile: Some(8), ..ImageOptions::default() };
     let found = judge(&honest(1, 256, law), &claim, &wanted).expect("a judgement");
     assert_eq!(found.verdict, Verdict::Pass, "{}", found.reason);
     assert!(found.reason.starts_with("but only a bias above 6 %"), "{}", found.reason);
-    let wanted = Options { tolerance: Some(0.05), tile: Some(24), ..Options::default() };
+    let wanted = ImageOptions { tolerance: Some(0.05), tile: Some(24), ..ImageOptions::default() };
     let found = judge(&honest(1, 256, law), &claim, &wanted).expect("a judgement");
     assert_eq!((found.verdict, &*found.reason), (Verdict::Pass, ""));
 }

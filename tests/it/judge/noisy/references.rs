@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use trueflight::judge::images::against::{Terms, compare};
-use trueflight::judge::images::{Claim, Options};
+use trueflight::judge::images::{Claim, ImageOptions};
 use trueflight::stats::verdict::Verdict;
 
 use super::{LAWS, Law, PIXELS, by_image, honest, image, judged, stack, truth, values};
@@ -21,7 +21,7 @@ fn correct_stacks_keep_the_level_against_a_reference() {
         for (n, m) in [(2, 4), (9, 9), (8, 24)] {
             for seed in 0..8 {
                 let (stack, reference) = (honest(seed, n, one), honest(20_000 + seed, m, other));
-                let wanted = Options { alpha: 0.05, ..Options::default() };
+                let wanted = ImageOptions { alpha: 0.05, ..ImageOptions::default() };
                 for is_same_distribution in [false, true] {
                     let terms = Terms { is_same_distribution, ..Terms::default() };
                     let found = compare(&stack, &reference, terms, &wanted).expect("a judgement");
@@ -39,7 +39,7 @@ fn correct_stacks_keep_the_level_against_a_reference() {
 #[test]
 fn wrong_renderers_are_found_against_a_reference() {
     let is_bad = |pixel: usize| (8..16).contains(&(pixel / 24)) && (8..16).contains(&(pixel % 24));
-    let wanted = Options { tile: Some(8), ..Options::default() };
+    let wanted = ImageOptions { tile: Some(8), ..ImageOptions::default() };
     for (law, passes, factor) in
         [(Law::Normal, 4, 1.6), (Law::Normal, 32, 1.2), (Law::Fireflies(0.6), 256, 1.3)]
     {
@@ -93,7 +93,7 @@ fn levels_of_correct_stacks() {
                     ..by_image(300_000 + seed, q, law)
                 };
                 failed[2] += count(judged(&stack, &claim, 1e-3).verdict);
-                let found = compare(&stack, &other, Terms::default(), &Options::default());
+                let found = compare(&stack, &other, Terms::default(), &ImageOptions::default());
                 failed[3] += count(found.expect("a judgement").verdict);
             }
             let _ = writeln!(table, "{law:?}, {n} passes, {q} others: {failed:?} of {STACKS}");

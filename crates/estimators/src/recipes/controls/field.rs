@@ -25,9 +25,9 @@ use media::catalogue::Settings;
 use media::{Body, Control};
 
 /// A catalogued field as a control.
-pub struct Field(Body);
+pub struct CataloguedField(Body);
 
-impl FromSettings for Field {
+impl FromSettings for CataloguedField {
     fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         let Some(body) = body else {
             settings.has("medium");
@@ -38,7 +38,7 @@ impl FromSettings for Field {
     }
 }
 
-impl Recipe for Field {
+impl Recipe for CataloguedField {
     fn label(&self) -> String {
         format!("field {}", self.0.name())
     }

@@ -66,7 +66,7 @@ pub const CATALOGUE: Registry<Reader> = registry![
     mean::Mean,
     minimum::Minimum,
     explorers::Explorers,
-    field::Field,
+    field::CataloguedField,
 ];
 
 /// Reads `{ NAME = { … } }`. The body is `None` after a mistake in it: checks that depend on it are skipped.

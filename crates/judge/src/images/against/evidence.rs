@@ -15,16 +15,16 @@ use super::super::judgement::Tile;
 use super::super::noisy::slack;
 use super::super::picture::Stack;
 use super::super::tiles::{Part, mean_at};
-use super::super::{ImageError, Options, variance};
+use super::super::{ImageError, ImageOptions, variance};
 use gate::stats::estimated_variance::Estimate;
 use gate::stats::normal::{p_value_of_symmetric, upper_quantile, upper_tail};
 use gate::stats::verdict::MISS;
 use theory::parallel;
 
 /// Sums over the passes of both stacks, for every value.
-pub(super) struct Evidence<'a> {
+pub(super) struct PassSums<'a> {
     stacks: [&'a Stack; 2],
-    wanted: &'a Options,
+    wanted: &'a ImageOptions,
     is_free: bool,
     rounding: f64,
     units: Vec<f64>,
@@ -34,13 +34,13 @@ pub(super) struct Evidence<'a> {
     together: [Vec<f64>; 2],
 }
 
-impl<'a> Evidence<'a> {
+impl<'a> PassSums<'a> {
     /// Adds up the passes; the tolerance is relative to the reference.
     pub(super) fn new(
         stack: &'a Stack,
         reference: &'a Stack,
         rounding: f64,
-        wanted: &'a Options,
+        wanted: &'a ImageOptions,
         is_free: bool,
     ) -> Result<Self, ImageError> {
         let size = stack.size;

@@ -22,10 +22,12 @@
 mod evidence;
 pub mod permutation;
 
-use self::evidence::Evidence;
+use self::evidence::PassSums;
 use self::permutation::{Groups, distinct};
-use super::judgement::{Comparison, ComparisonMethod, Dependence, Judgement, Tile};
-use super::{ImageError, NOISY_VALUES, Options, Stack, claim, repeats, tiles, variance, verdict};
+use super::judgement::{ComparisonMethod, Dependence, Judgement, StackComparison, Tile};
+use super::{
+    ImageError, ImageOptions, NOISY_VALUES, Stack, claim, repeats, tiles, variance, verdict,
+};
 use super::{neighbours_of, order_of, refuted};
 use crate::{ROUNDING, SIDE_SHARE, decide_together, main_share};
 use gate::stats::verdict::Verdict;
@@ -76,7 +78,7 @@ pub fn compare(
     stack: &Stack,
     reference: &Stack,
     terms: Terms,
-    wanted: &Options,
+    wanted: &ImageOptions,
 ) -> Result<Judgement, ImageError> {
     wanted.check()?;
     check(stack, reference, terms)?;
@@ -99,7 +101,7 @@ pub fn compare(
              nothing; give each stack seeds of its own"
         );
     }
-    let mut comparison = Comparison {
+    let mut comparison = StackComparison {
         passes: reference.passes,
         method: ComparisonMethod::None,
         permutations: 0,
@@ -111,7 +113,7 @@ pub fn compare(
     };
     let mut differing = 0;
     if judgement.refuting == 0 && !judgement.order.is_refuted() {
-        let evidence = Evidence::new(stack, reference, terms.rounding, wanted, is_free)?;
+        let evidence = PassSums::new(stack, reference, terms.rounding, wanted, is_free)?;
         differing = test([stack, reference], &evidence, &mut comparison, &mut judgement);
     }
     judgement.comparison = Some(comparison.clone());
@@ -122,8 +124,8 @@ pub fn compare(
 /// Makes both tests of all tiles and wholes. Returns how many are rejected for equal distributions alone.
 fn test(
     stacks: [&Stack; 2],
-    evidence: &Evidence,
-    comparison: &mut Comparison,
+    evidence: &PassSums,
+    comparison: &mut StackComparison,
     judgement: &mut Judgement,
 ) -> usize {
     let Judgement { size, tile, alpha, .. } = *judgement;

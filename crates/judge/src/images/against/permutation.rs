@@ -43,7 +43,7 @@ pub struct Groups {
 
 /// p-values of all columns.
 #[derive(Debug, Clone)]
-pub struct Found {
+pub struct ColumnPValues {
     /// t of each column.
     pub t: Vec<f64>,
     /// p of each column by itself.
@@ -110,7 +110,7 @@ impl Groups {
     }
 
     /// Compares the groups as they are with random deals, as many as the level `alpha` needs.
-    pub fn compare(&self, alpha: f64, seed: u64) -> Found {
+    pub fn compare(&self, alpha: f64, seed: u64) -> ColumnPValues {
         let all = self.rows[0] + self.rows[1];
         let t = self.statistics(&(0..self.rows[0]).collect::<Vec<_>>());
         let mut order: Vec<usize> = (0..t.len()).collect();
@@ -159,7 +159,7 @@ impl Groups {
             least = least.max(share(largest[column]));
             adjusted[column] = least;
         }
-        Found { p: above.into_iter().map(share).collect(), t, adjusted, deals }
+        ColumnPValues { p: above.into_iter().map(share).collect(), t, adjusted, deals }
     }
 }
 

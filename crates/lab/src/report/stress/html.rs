@@ -2,7 +2,7 @@
 
 use trueflight::report::html::template::html;
 
-use crate::stress::{Row, Stress};
+use crate::stress::{Stress, TrialRow};
 use numeric::digits::time;
 use trueflight::report::ReportError;
 use trueflight::report::fields::{Shown, shown};
@@ -10,13 +10,13 @@ use trueflight::report::html::drawing::{definitions, plot};
 use trueflight::report::html::listing::{page, section};
 
 /// Columns of the page, beside the result.
-const COLUMNS: &[Shown] = shown!(&Row:
+const COLUMNS: &[Shown] = shown!(&TrialRow:
     "quantity", "range", "worst", "bound", "measure", "trials", "where"
 );
 
 /// Returns the stress test as a page of HTML.
 pub fn text(found: &Stress) -> Result<String, ReportError> {
-    let rows: Vec<&Row> = found.rows.iter().collect();
+    let rows: Vec<&TrialRow> = found.rows.iter().collect();
     let broken = rows.iter().filter(|row| !row.holds()).count();
     let (class, line) = match broken {
         0 => ("pass", format!("pass: all {} bounds hold", rows.len())),
@@ -37,6 +37,6 @@ pub fn text(found: &Stress) -> Result<String, ReportError> {
     Ok(page("numbers under stress", (class, &line), &head, &sections))
 }
 
-fn word(row: &Row) -> String {
+fn word(row: &TrialRow) -> String {
     if row.holds() { "✓ yes" } else { "✗ NO" }.to_owned()
 }

@@ -7,11 +7,11 @@ use std::fmt::Write;
 
 use serde_json::json;
 
-use crate::stress::narrow::{Along, Curve, DRAWS, Point};
-use crate::stress::{Row, Stress};
+use crate::stress::narrow::{Along, BothPrecisions, DRAWS, PrecisionCurve};
+use crate::stress::{Stress, TrialRow};
 use numeric::digits::{number, short};
 use trueflight::report::fields::{self, Shown, Table, judged, object, place, shown, table};
-use trueflight::report::layout::{Column, Field, Grid, Paint, Pen};
+use trueflight::report::layout::{Column, LayoutField, Paint, Pen, TableLayout};
 use trueflight::report::plots;
 use trueflight::report::{Artifact, ReportError};
 
@@ -19,18 +19,18 @@ use trueflight::report::{Artifact, ReportError};
 const FOLDER: &str = "stress";
 
 /// Columns of the screen beside the result, each with its rank.
-const COLUMNS: &[Shown] = shown!(&Row:
+const COLUMNS: &[Shown] = shown!(&TrialRow:
     "quantity", "range" 2, "trials" 1, "left_out" 1, "worst", "bound", "measure"
 );
 
 /// Returns the tables for the screen.
 pub fn table(found: &Stress, pen: Pen) -> String {
     let mut text = String::new();
-    let rows: Vec<&Row> = found.rows.iter().collect();
+    let rows: Vec<&TrialRow> = found.rows.iter().collect();
     text.push_str(&judged(&rows, COLUMNS, ("holds", ["yes", "NO"]), |row| row.holds(), pen));
     for row in rows.iter().filter(|row| !row.holds()) {
         let said = if row.is_mostly_skipped() {
-            let Row { quantity, skipped, trials, first_skipped, .. } = row;
+            let TrialRow { quantity, skipped, trials, first_skipped, .. } = row;
             format!(
                 "{quantity}: {skipped} skipped, {trials} compared; first skipped: {first_skipped}"
             )
@@ -51,13 +51,13 @@ pub fn table(found: &Stress, pen: Pen) -> String {
     text
 }
 
-fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
+fn single_precision(text: &mut String, pen: Pen, curves: &[PrecisionCurve]) {
     let title =
         format!("single precision: its bias exceeds the error of {} draws from …", number(DRAWS));
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let estimators: Vec<&Curve> =
+    let estimators: Vec<&PrecisionCurve> =
         curves.iter().filter(|curve| curve.along == Along::Steps).collect();
-    let of = |along: Along| -> Vec<Field> {
+    let of = |along: Along| -> Vec<LayoutField> {
         let curves = curves.iter().filter(|curve| curve.along == along);
         let words = curves.map(|curve| {
             let nowhere = || match curve.holds_to() {
@@ -67,11 +67,12 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
             };
             curve.fails_from().map_or_else(nowhere, |x| short(x, 3))
         });
-        words.map(Field::plain).collect()
+        words.map(LayoutField::plain).collect()
     };
-    let names = estimators.iter().map(|curve| Field::plain(curve.estimator.to_owned())).collect();
+    let names =
+        estimators.iter().map(|curve| LayoutField::plain(curve.estimator.to_owned())).collect();
     let column = |head, along| Column { head, right: true, rank: 0, fields: of(along) };
-    let mut grid = Grid {
+    let mut grid = TableLayout {
         columns: vec![
             Column { head: "estimator", right: false, rank: 0, fields: names },
             column("collisions", Along::Steps),
@@ -85,7 +86,7 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
 
 /// Returns the tables as JSON; numbers that are not finite are null.
 fn json(found: &Stress) -> Result<String, ReportError> {
-    let (fields, of_points) = (<&Row>::of_files(), Measured::fields());
+    let (fields, of_points) = (<&TrialRow>::of_files(), PrecisionPoint::fields());
     let curves = found.narrow.curves.iter().map(|curve| {
         let point = |row| object(&of_points[OF_CURVES..], &row);
         json!({
@@ -107,7 +108,7 @@ fn json(found: &Stress) -> Result<String, ReportError> {
 }
 
 table! {
-    impl<'a> for &'a Row {
+    impl<'a> for &'a TrialRow {
         "quantity": "Quantity that is computed" = |row| &row.quantity;
         "range": "Range of its arguments" = |row| &row.range;
         "trials": "Number of arguments that were compared" = |row| row.trials;
@@ -124,29 +125,29 @@ table! {
 
 /// Point of a curve of single precision.
 #[derive(Debug, Clone, Copy)]
-pub struct Measured<'a> {
-    curve: &'a Curve,
-    point: &'a Point,
+pub struct PrecisionPoint<'a> {
+    curve: &'a PrecisionCurve,
+    point: &'a BothPrecisions,
 }
 
-fn points(curve: &Curve) -> impl Iterator<Item = Measured<'_>> {
-    curve.points.iter().map(move |point| Measured { curve, point })
+fn points(curve: &PrecisionCurve) -> impl Iterator<Item = PrecisionPoint<'_>> {
+    curve.points.iter().map(move |point| PrecisionPoint { curve, point })
 }
 
 /// Number of fields of a point that all points of its curve share.
-const OF_CURVES: usize = place::<Measured>("x");
+const OF_CURVES: usize = place::<PrecisionPoint>("x");
 
 table! {
-    impl<'a> for Measured<'a> {
-        "family": "Family of estimators" = |Measured { curve, .. }| curve.family;
-        "estimator": "Estimator" = |Measured { curve, .. }| curve.estimator;
-        "along": "Quantity that is varied" = |Measured { curve, .. }| curve.along.word();
-        "x": "Its value" = |Measured { point, .. }| point.x;
-        "walks": "Number of walks" = |Measured { point, .. }| point.walks;
-        "bias": "Bias of single precision, relative to the mean" = |Measured { point, .. }| point.bias;
-        "bias_error": "Its standard error" = |Measured { point, .. }| point.error;
-        "noise_1e8": "Relative standard error of 1e8 draws" = |Measured { point, .. }| point.noise;
-        "exceeds": "Whether the bias exceeds the noise" = |Measured { point, .. }| point.exceeds();
+    impl<'a> for PrecisionPoint<'a> {
+        "family": "Family of estimators" = |PrecisionPoint { curve, .. }| curve.family;
+        "estimator": "Estimator" = |PrecisionPoint { curve, .. }| curve.estimator;
+        "along": "Quantity that is varied" = |PrecisionPoint { curve, .. }| curve.along.word();
+        "x": "Its value" = |PrecisionPoint { point, .. }| point.x;
+        "walks": "Number of walks" = |PrecisionPoint { point, .. }| point.walks;
+        "bias": "Bias of single precision, relative to the mean" = |PrecisionPoint { point, .. }| point.bias;
+        "bias_error": "Its standard error" = |PrecisionPoint { point, .. }| point.error;
+        "noise_1e8": "Relative standard error of 1e8 draws" = |PrecisionPoint { point, .. }| point.noise;
+        "exceeds": "Whether the bias exceeds the noise" = |PrecisionPoint { point, .. }| point.exceeds();
     }
 }
 
@@ -155,9 +156,9 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
     let points = found.narrow.curves.iter().flat_map(points);
     let path = |name: &str| format!("{FOLDER}/{name}");
     let mut all = vec![
-        fields::artifact(&path("stress.csv"), &<&Row>::of_files(), &found.rows)?,
+        fields::artifact(&path("stress.csv"), &<&TrialRow>::of_files(), &found.rows)?,
         Artifact::text(path("stress.json"), json(found)?),
-        fields::artifact(&path("single-precision.csv"), &Measured::fields(), points)?,
+        fields::artifact(&path("single-precision.csv"), &PrecisionPoint::fields(), points)?,
         Artifact::text(path("report.html"), html::text(found)?),
     ];
     let sheet = plot::figure(&found.narrow.curves)?;

@@ -3,13 +3,13 @@
 
 use plotters::style::Color;
 
-use crate::stress::narrow::{Along, Curve, Point};
+use crate::stress::narrow::{Along, BothPrecisions, PrecisionCurve};
 use drawing::Sheet;
 use drawing::font::fit;
 use drawing::sheet::Align;
 use trueflight::report::ReportError;
 use trueflight::report::plots::figure::{Figure, LEFT};
-use trueflight::report::plots::legend::{self, Entry, LINE};
+use trueflight::report::plots::legend::{self, LINE, LegendEntry};
 use trueflight::report::plots::style::{GREY, Style};
 use trueflight::report::plots::{Axis, Panel};
 
@@ -22,7 +22,7 @@ const BELOW: f64 = 76.0;
 const FLOOR: f64 = 1e-3;
 
 /// Draws bias over noise along every quantity: above 1 single precision is wrong.
-pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
+pub fn figure(curves: &[PrecisionCurve]) -> Result<Sheet, ReportError> {
     let mut families: Vec<&str> = curves.iter().map(|curve| curve.family).collect();
     families.dedup();
     let panels = Along::ALL.map(|along| first_to_fail(curves, &families, along));
@@ -43,7 +43,7 @@ pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
         let left = LEFT + column as f64 * PITCH;
         let all = curves.iter().filter(|curve| curve.along == along);
         one_panel(&mut sheet, left, along, (shown, all.flat_map(|curve| &curve.points)));
-        let entries: Vec<Entry> = shown.iter().map(entry).collect();
+        let entries: Vec<LegendEntry> = shown.iter().map(entry).collect();
         legend::draw(&face, &mut sheet, [left, TOP + PANEL[1] + BELOW], &entries, PANEL[0]);
     }
     Ok(sheet)
@@ -52,11 +52,11 @@ pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
 /// Returns for each family, with its number, the curve that exceeds the noise at the smallest value; of several such
 /// curves the one with the largest bias there. Families without such a curve are left out.
 fn first_to_fail<'a>(
-    curves: &'a [Curve],
+    curves: &'a [PrecisionCurve],
     families: &[&str],
     along: Along,
-) -> Vec<(usize, &'a Curve)> {
-    let key = |curve: &Curve| {
+) -> Vec<(usize, &'a PrecisionCurve)> {
+    let key = |curve: &PrecisionCurve| {
         let point = curve.points.iter().find(|point| point.exceeds())?;
         Some([point.x, -share(point.bias, point.noise)])
     };
@@ -70,10 +70,10 @@ fn first_to_fail<'a>(
     families.iter().enumerate().filter_map(first).collect()
 }
 
-fn entry(&(family, curve): &(usize, &Curve)) -> Entry {
+fn entry(&(family, curve): &(usize, &PrecisionCurve)) -> LegendEntry {
     let Style { colour, marker, .. } = Style::of(family);
     let label = curve.estimator.to_owned();
-    Entry { label, line: Some((&[], 2.0)), marker: Some(marker), colour }
+    LegendEntry { label, line: Some((&[], 2.0)), marker: Some(marker), colour }
 }
 
 fn share(bias: f64, noise: f64) -> f64 {
@@ -82,7 +82,7 @@ fn share(bias: f64, noise: f64) -> f64 {
 
 /// Without a variance there is no noise to compare with.
 #[allow(clippy::trivially_copy_pass_by_ref)] // what filters hand over
-fn has_noise(point: &&Point) -> bool {
+fn has_noise(point: &&BothPrecisions) -> bool {
     point.noise > 0.0
 }
 
@@ -90,7 +90,7 @@ fn one_panel<'a>(
     sheet: &mut Sheet,
     left: f64,
     along: Along,
-    (curves, all): (&[(usize, &Curve)], impl Iterator<Item = &'a Point>),
+    (curves, all): (&[(usize, &PrecisionCurve)], impl Iterator<Item = &'a BothPrecisions>),
 ) {
     let points = || curves.iter().flat_map(|(_, curve)| &curve.points).filter(has_noise);
     let x = Axis::around(along.title(), true, 0.04, all.map(|point| point.x));

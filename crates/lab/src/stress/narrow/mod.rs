@@ -21,12 +21,12 @@ pub mod walks;
 
 use std::any::Any;
 
-use self::scene::Scene;
-use self::walks::{Entry, Subject};
-use super::{Measure, Row, Run};
+use self::scene::StressScene;
+use self::walks::{FamilyEntry, StressSubject};
+use super::{Measure, Run, TrialRow};
 use numeric::rng::Address;
 use theory::{Channel, Prediction, parallel};
-use trueflight::case::{Case, Source};
+use trueflight::case::{Case, CaseText};
 
 /// Number of draws n in the noise that the bias is compared with.
 pub const DRAWS: f64 = 1e8;
@@ -69,11 +69,11 @@ impl Along {
     }
 
     /// The scene at a value.
-    fn scene(self, x: f64) -> Scene {
+    fn scene(self, x: f64) -> StressScene {
         match self {
-            Self::Steps => Scene { depth: 2.0, collisions: x, from: 0.0 },
-            Self::Depth => Scene { depth: x, collisions: 20.0 * 1.8 * x, from: 0.0 },
-            Self::Origin => Scene { depth: 2.0, collisions: 40.0, from: x },
+            Self::Steps => StressScene { depth: 2.0, collisions: x, from: 0.0 },
+            Self::Depth => StressScene { depth: x, collisions: 20.0 * 1.8 * x, from: 0.0 },
+            Self::Origin => StressScene { depth: 2.0, collisions: 40.0, from: x },
         }
     }
 }
@@ -91,7 +91,7 @@ const QUICK: [&[f64]; 3] = [&[10.0, 1e3], &[1.0, 10.0], &[10.0, 1e5]];
 pub struct Family {
     title: &'static str,
     /// Its estimators.
-    pub entries: &'static [Entry],
+    pub entries: &'static [FamilyEntry],
     /// The largest values of each quantity.
     limits: [f64; 3],
     /// Random words that the doubles of a point may take in the short form, and in the full one.
@@ -100,7 +100,7 @@ pub struct Family {
 
 const fn family(
     title: &'static str,
-    entries: &'static [Entry],
+    entries: &'static [FamilyEntry],
     [collisions, depth]: [f64; 2],
     budget: [f64; 2],
 ) -> Family {
@@ -121,7 +121,7 @@ pub const FAMILIES: &[Family] = &[
 fn prepared(text: &str) -> Option<(Box<dyn Any>, Prediction)> {
     /// Address of pilot draws, where theory has no variance.
     const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
-    let source = Source { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
+    let source = CaseText { name: "stress".into(), path: "stress.toml".into(), text: text.into() };
     let case = Case::read(&source).ok()?;
     let at = case.at(None).ok()?;
     Some((at.join(0, NOWHERE).ok()?.into_setup(), at.predict(0, None, NOWHERE)?))
@@ -129,7 +129,7 @@ fn prepared(text: &str) -> Option<(Box<dyn Any>, Prediction)> {
 
 /// Both precisions at one point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct BothPrecisions {
     /// The value of the quantity that is varied.
     pub x: f64,
     /// Number of walks.
@@ -144,7 +144,7 @@ pub struct Point {
     pub z: Option<f64>,
 }
 
-impl Point {
+impl BothPrecisions {
     /// Returns whether the bias exceeds the noise by more than 3 of its standard errors.
     pub fn exceeds(&self) -> bool {
         self.bias.abs() - 3.0 * self.error > self.noise
@@ -160,12 +160,16 @@ impl Point {
 /// Compares both precisions in a scene, by walks from a seed with a budget of random words. Returns `None` where theory
 /// refuses the case.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MAX_WALKS
-pub fn compare(entry: &Entry, scene: &Scene, (seed, budget): (u64, f64)) -> Option<Point> {
+pub fn compare(
+    entry: &FamilyEntry,
+    scene: &StressScene,
+    (seed, budget): (u64, f64),
+) -> Option<BothPrecisions> {
     let (setup, prediction) = prepared(&scene.case(entry.asked, entry.written))?;
     let wanted = entry.asked[3];
     let is_wanted = |channel: &Channel| wanted.is_empty() || channel.name == wanted;
     let channel = prediction.channels.iter().position(is_wanted)?;
-    let subject = Subject { scene, setup: &*setup, channel, is_kept: entry.is_kept };
+    let subject = StressSubject { scene, setup: &*setup, channel, is_kept: entry.is_kept };
     let Channel { truth, moments, .. } = &prediction.channels[channel];
     // Σx and Σx² of the doubles, and of the differences.
     let (mut sums, mut words) = ([[0.0; 2]; 2], 0.0);
@@ -192,12 +196,12 @@ pub fn compare(entry: &Entry, scene: &Scene, (seed, budget): (u64, f64)) -> Opti
     let is_seen = entry.is_kept || walks >= MIN_WALKS as f64 * variance.max(1.0);
     let noise = if is_seen { (variance / DRAWS).sqrt() } else { f64::NAN };
     let z = (is_seen && variance > 0.0).then_some((mean - 1.0) / (variance / walks).sqrt());
-    Some(Point { x: f64::NAN, walks, bias, error, noise, z })
+    Some(BothPrecisions { x: f64::NAN, walks, bias, error, noise, z })
 }
 
 /// One estimator along one quantity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct PrecisionCurve {
     /// The family in which it is drawn.
     pub family: &'static str,
     /// The estimator.
@@ -205,10 +209,10 @@ pub struct Curve {
     /// The quantity that is varied.
     pub along: Along,
     /// The points, ascending; empty where the quantity is not varied, or theory refuses all cases.
-    pub points: Vec<Point>,
+    pub points: Vec<BothPrecisions>,
 }
 
-impl Curve {
+impl PrecisionCurve {
     /// The first value at which the bias exceeds the noise; `None` if it exceeds it nowhere.
     pub fn fails_from(&self) -> Option<f64> {
         self.points.iter().find(|point| point.exceeds()).map(|point| point.x)
@@ -224,16 +228,16 @@ impl Curve {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Narrow {
     /// Every estimator along every quantity: family by family, quantity by quantity.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PrecisionCurve>,
 }
 
 impl Narrow {
     /// One row: the comparison is valid if the means of the doubles agree with the truth.
-    pub fn rows(&self) -> Vec<Row> {
+    pub fn rows(&self) -> Vec<TrialRow> {
         let estimators: usize = FAMILIES.iter().map(|family| family.entries.len()).sum();
         let range = format!("{estimators} estimators, all points of the plot");
-        let mut row = Row::new("mean of doubles beside f32", range, Measure::Deviations, 6.0);
-        for Curve { estimator, along, points, .. } in &self.curves {
+        let mut row = TrialRow::new("mean of doubles beside f32", range, Measure::Deviations, 6.0);
+        for PrecisionCurve { estimator, along, points, .. } in &self.curves {
             for (point, number) in points.iter().zip(0..) {
                 let place = || format!("{estimator}, {} = {:e}", along.word(), point.x);
                 if let Some(z) = point.z {
@@ -260,10 +264,10 @@ pub fn measure(Run { effort, seed }: Run) -> Narrow {
         let points = parallel::map(&values, |&x| {
             let scene = along.scene(x);
             let budget = effort.of(budget[0], budget[1]);
-            Some(Point { x, ..compare(entry, &scene, (seed, budget))? })
+            Some(BothPrecisions { x, ..compare(entry, &scene, (seed, budget))? })
         });
         let points = points.into_iter().flatten().collect();
-        Curve { family, estimator: entry.name, along, points }
+        PrecisionCurve { family, estimator: entry.name, along, points }
     });
     Narrow { curves }
 }

@@ -29,7 +29,7 @@ const SHAPE: [f64; 3] = [1.8, -3.6, 2.0];
 
 /// A ray of length 1, or a ball of diameter 1.
 #[derive(Debug, Clone, Copy)]
-pub struct Scene {
+pub struct StressScene {
     /// τ.
     pub depth: f64,
     /// ∫σ̂.
@@ -38,7 +38,7 @@ pub struct Scene {
     pub from: f64,
 }
 
-impl Scene {
+impl StressScene {
     /// σ_t along the ray.
     #[inline(always)]
     pub fn on_ray<L: Lane>(&self, t: L) -> L {

@@ -22,7 +22,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use numeric::fused::compiled_once;
 use numeric::rng::{Random, Stream};
-use numeric::{F32, Lane, Row, ScalarLane};
+use numeric::{CacheRow, F32, Lane, ScalarLane};
 
 /// Double or single precision.
 pub trait Precision: ScalarLane {
@@ -40,12 +40,12 @@ impl Precision for F32 {
 
 /// A side of a bound on which a uniform number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
+enum BoundSide {
     Below,
     Above,
 }
 
-impl Side {
+impl BoundSide {
     fn other(self) -> Self {
         match self {
             Self::Below => Self::Above,
@@ -58,13 +58,13 @@ impl Side {
 #[derive(Debug, Clone, Copy)]
 struct Decision {
     word: u32,
-    side: Side,
+    side: BoundSide,
     /// Q.
     probability: f64,
 }
 
 #[derive(Debug)]
-struct State {
+struct TrailState {
     stream: Stream,
     /// True if comparisons, which would end the walk, are false.
     is_kept: bool,
@@ -81,20 +81,28 @@ struct State {
 
 /// The random numbers and decisions of a walk.
 #[derive(Debug)]
-pub struct Trail(RefCell<State>);
+pub struct Trail(RefCell<TrailState>);
 
 impl Trail {
     /// Trail of a walk. It decides by random numbers; if `is_kept`, its comparisons, which would end it, are false.
     pub fn new(stream: Stream, is_kept: bool) -> Self {
         let (script, made, interval) = (VecDeque::new(), VecDeque::new(), (0, [0.0, 1.0]));
         let likelihood = 1.0;
-        Self(RefCell::new(State { stream, is_kept, words: 0, script, made, likelihood, interval }))
+        Self(RefCell::new(TrailState {
+            stream,
+            is_kept,
+            words: 0,
+            script,
+            made,
+            likelihood,
+            interval,
+        }))
     }
 
     /// The trail of a walk that repeats the decisions, with the words of the same stream.
     #[must_use]
     pub fn again(self, stream: Stream) -> Self {
-        let State { is_kept, made, .. } = self.0.into_inner();
+        let TrailState { is_kept, made, .. } = self.0.into_inner();
         let fresh = Self::new(stream, is_kept);
         fresh.0.borrow_mut().script = made;
         fresh
@@ -121,14 +129,20 @@ impl Trail {
     }
 }
 
-impl State {
+impl TrailState {
     /// Decides on which side of a bound the uniform number of a word counts to be: as the script has it, else on the
     /// side of the number that was `drawn`, or, in a walk that is kept, on the `surviving` side. The number is below
     /// the bound with the probability `bound`.
-    fn decide(&mut self, word: u32, bound: f64, drawn: Side, surviving: Side) -> Side {
+    fn decide(
+        &mut self,
+        word: u32,
+        bound: f64,
+        drawn: BoundSide,
+        surviving: BoundSide,
+    ) -> BoundSide {
         let [low, high] = if self.interval.0 == word { self.interval.1 } else { [0.0, 1.0] };
         let below = ((bound - low) / (high - low)).clamp(0.0, 1.0);
-        let own = |side| if side == Side::Below { below } else { 1.0 - below };
+        let own = |side| if side == BoundSide::Below { below } else { 1.0 - below };
         let decision = match self.script.pop_front() {
             Some(earlier) if earlier.word == word => earlier,
             _ => {
@@ -144,7 +158,7 @@ impl State {
             self.likelihood *= own(side) / probability;
         }
         let rest =
-            if side == Side::Below { [low, bound.min(high)] } else { [bound.max(low), high] };
+            if side == BoundSide::Below { [low, bound.min(high)] } else { [bound.max(low), high] };
         self.interval = (word, rest);
         side
     }
@@ -152,7 +166,7 @@ impl State {
 
 /// `scale · u + shift`, of the uniform number u of a word.
 #[derive(Debug, Clone, Copy)]
-struct Drawn<'a> {
+struct ScaledWord<'a> {
     trail: &'a Trail,
     word: u32,
     scale: f64,
@@ -163,7 +177,7 @@ struct Drawn<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Traced<'a, N> {
     number: N,
-    drawn: Option<Drawn<'a>>,
+    drawn: Option<ScaledWord<'a>>,
 }
 
 impl<N: Precision> Traced<'_, N> {
@@ -177,7 +191,7 @@ impl<N: Precision> Traced<'_, N> {
     fn on_line(self, factor: f64, term: f64, number: N) -> Self {
         let Some(drawn) = self.drawn else { return Self::plain(number) };
         let (scale, shift) = (drawn.scale * factor, drawn.shift * factor + term);
-        Self { number, drawn: Some(Drawn { scale, shift, ..drawn }) }
+        Self { number, drawn: Some(ScaledWord { scale, shift, ..drawn }) }
     }
 
     /// Returns the result of a comparison `self < other`, which is `plainly` for the plain numbers. With a drawn number
@@ -192,7 +206,8 @@ impl<N: Precision> Traced<'_, N> {
         let bound = (bound.double() - drawn.shift) / drawn.scale;
         let bound = ((bound * N::LATTICE).ceil() / N::LATTICE).clamp(0.0, 1.0);
         // The side of the uniform number on which the comparison is true.
-        let less = if is_smaller == (drawn.scale > 0.0) { Side::Below } else { Side::Above };
+        let less =
+            if is_smaller == (drawn.scale > 0.0) { BoundSide::Below } else { BoundSide::Above };
         let side = if plainly { less } else { less.other() };
         let state = &mut *drawn.trail.0.borrow_mut();
         state.decide(drawn.word, bound, side, less.other()) == less
@@ -202,7 +217,7 @@ impl<N: Precision> Traced<'_, N> {
 impl<'a, N: Precision> Random<Traced<'a, N>> for &'a Trail {
     fn uniform(&mut self) -> Traced<'a, N> {
         let (u, word) = Trail::uniform::<N>(self);
-        let drawn = Drawn { trail: self, word, scale: 1.0, shift: 0.0 };
+        let drawn = ScaledWord { trail: self, word, scale: 1.0, shift: 0.0 };
         Traced { number: N::of(u), drawn: Some(drawn) }
     }
 
@@ -351,7 +366,7 @@ impl<N: Precision> Lane for Traced<'_, N> {
     }
 
     #[inline(always)]
-    fn columns(self, table: &[Row]) -> [Self; 5] {
+    fn columns(self, table: &[CacheRow]) -> [Self; 5] {
         self.number.columns(table).map(Self::plain)
     }
 }

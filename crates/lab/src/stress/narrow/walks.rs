@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 
 use super::Along;
 use super::Along::{Depth, Origin, Steps};
-use super::scene::{BALL, LIT, RAY, Scene};
+use super::scene::{BALL, LIT, RAY, StressScene};
 use super::trail::{Precision, Traced, Trail};
 use estimators::free_flight::woodcock::Flights;
 use estimators::rod::walk::{InRod, RuleAndRoulette};
@@ -16,7 +16,7 @@ use estimators::setup::OnRay;
 use estimators::single_scattering::plan::{Absorption, Plan, Run, Technique, Vertices};
 use estimators::slab::walk::InSlab;
 use estimators::space::walk::InSpace;
-use estimators::space::{Particle, Splitting, Tally, Walked, draws};
+use estimators::space::{ParticleSettings, Splitting, Tally, Walked, draws};
 use estimators::sphere::Correct;
 use estimators::sphere::combined::Combined;
 use estimators::sphere::sharing::SharedTechniques;
@@ -46,9 +46,9 @@ use theory::space::sphere::Techniques;
 
 /// A scene with the setup of an estimator.
 #[derive(Clone, Copy)]
-pub struct Subject<'a> {
+pub struct StressSubject<'a> {
     /// The scene.
-    pub scene: &'a Scene,
+    pub scene: &'a StressScene,
     /// A `Setup<P>`.
     pub setup: &'a dyn Any,
     /// The channel that is compared.
@@ -58,20 +58,20 @@ pub struct Subject<'a> {
 }
 
 /// An estimator in any precision.
-trait Draws: Sync {
+trait PreciseDraws: Sync {
     /// Draw of a trail, without its likelihood; `None` if the setup is that of another problem.
-    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64>;
+    fn draw<N: Precision>(&self, of: StressSubject, trail: &Trail) -> Option<f64>;
 }
 
 /// An estimator in both precisions.
 pub trait InBoth: Sync {
     /// Draws of a walk from a seed, in doubles and in single precision, and the number of random words of the first.
     /// Returns `None` if the setup is that of another problem.
-    fn pair(&self, of: Subject, seed: u64, walk: u64) -> Option<([f64; 2], f64)>;
+    fn pair(&self, of: StressSubject, seed: u64, walk: u64) -> Option<([f64; 2], f64)>;
 }
 
-impl<D: Draws> InBoth for D {
-    fn pair(&self, of: Subject, seed: u64, walk: u64) -> Option<([f64; 2], f64)> {
+impl<D: PreciseDraws> InBoth for D {
+    fn pair(&self, of: StressSubject, seed: u64, walk: u64) -> Option<([f64; 2], f64)> {
         let experiment = name_hash("stress|narrow");
         let stream = Address { seed, experiment, block: walk, lane: 0 }.stream();
         let trail = Trail::new(stream, of.is_kept);
@@ -84,7 +84,11 @@ impl<D: Draws> InBoth for D {
 
 /// A draw with its likelihood: compiled once for each precision.
 #[inline(never)]
-fn weighted<D: Draws, N: Precision>(draws: &D, of: Subject, trail: &Trail) -> Option<f64> {
+fn weighted<D: PreciseDraws, N: Precision>(
+    draws: &D,
+    of: StressSubject,
+    trail: &Trail,
+) -> Option<f64> {
     let draw = compiled_once(
         #[inline(always)]
         || draws.draw::<N>(of, trail),
@@ -97,7 +101,7 @@ fn weighted<D: Draws, N: Precision>(draws: &D, of: Subject, trail: &Trail) -> Op
 fn along<'t, N: Precision, P: Estimated<Value: Channels, Fields: OnRay>>(
     walk: &impl Walk,
     setup: &Setup<P>,
-    Subject { scene, channel, .. }: Subject,
+    StressSubject { scene, channel, .. }: StressSubject,
     mut trail: &'t Trail,
 ) -> Option<f64> {
     let look_up = |_, t: Traced<'t, N>| scene.on_ray(t);
@@ -108,9 +112,9 @@ fn along<'t, N: Precision, P: Estimated<Value: Channels, Fields: OnRay>>(
 /// Makes a draw by a particle in space.
 #[inline(always)]
 fn in_space<'t, N: Precision, V: Channels + AsRef<[f64]>, const SPLITS: bool>(
-    (tally, particle): (&impl Tally, Particle),
+    (tally, particle): (&impl Tally, ParticleSettings),
     world: (&problems::Scene, &Majorants),
-    Subject { scene, channel, .. }: Subject,
+    StressSubject { scene, channel, .. }: StressSubject,
     mut trail: &'t Trail,
 ) -> Option<f64> {
     // σ_t alone is looked up.
@@ -158,11 +162,16 @@ on_ray! {
 }
 
 /// Single scattering by the plan for a scene.
-struct Planned(fn(&Scene) -> Plan);
+struct PlannedScattering(fn(&StressScene) -> Plan);
 
-struct One<'a, N>(&'a Setup<SingleScattering>, Subject<'a>, &'a Trail, PhantomData<N>);
+struct ScatteringDraw<'a, N>(
+    &'a Setup<SingleScattering>,
+    StressSubject<'a>,
+    &'a Trail,
+    PhantomData<N>,
+);
 
-impl<N: Precision> Run for One<'_, N> {
+impl<N: Precision> Run for ScatteringDraw<'_, N> {
     type Output = Option<f64>;
 
     /// A function of its own for each walk: the time of a compiler grows faster than a function.
@@ -175,21 +184,21 @@ impl<N: Precision> Run for One<'_, N> {
     }
 }
 
-impl Draws for Planned {
+impl PreciseDraws for PlannedScattering {
     #[inline(always)]
-    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+    fn draw<N: Precision>(&self, of: StressSubject, trail: &Trail) -> Option<f64> {
         let setup = of.setup.downcast_ref::<Setup<SingleScattering>>()?;
         let medium = setup.problem.lookups(Level::new());
-        self.0(of.scene).run_on(setup, &medium, One::<N>(setup, of, trail, PhantomData))
+        self.0(of.scene).run_on(setup, &medium, ScatteringDraw::<N>(setup, of, trail, PhantomData))
     }
 }
 
 /// A particle that walks through the scene of a problem.
-struct Walks<P, const SPLITS: bool = false>(Particle, PhantomData<fn(P)>);
+struct SceneWalks<P, const SPLITS: bool = false>(ParticleSettings, PhantomData<fn(P)>);
 
-impl<P: Walked, const SPLITS: bool> Draws for Walks<P, SPLITS> {
+impl<P: Walked, const SPLITS: bool> PreciseDraws for SceneWalks<P, SPLITS> {
     #[inline(always)]
-    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+    fn draw<N: Precision>(&self, of: StressSubject, trail: &Trail) -> Option<f64> {
         let setup = of.setup.downcast_ref::<Setup<P>>()?;
         let (tally, majorants) = (P::tally(setup, &self.0).ok()?, &*setup.fields);
         let world = (setup.problem.scene(), majorants);
@@ -198,11 +207,11 @@ impl<P: Walked, const SPLITS: bool> Draws for Walks<P, SPLITS> {
 }
 
 /// Next-event estimation in a ball, with the tracking of shadow rays through a scene.
-struct Connects(ParticleRule, fn(&Scene) -> Tracking);
+struct Connects(ParticleRule, fn(&StressScene) -> Tracking);
 
-impl Draws for Connects {
+impl PreciseDraws for Connects {
     #[inline(always)]
-    fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+    fn draw<N: Precision>(&self, of: StressSubject, trail: &Trail) -> Option<f64> {
         let setup = of.setup.downcast_ref::<Setup<Sphere>>()?;
         let (sphere, majorants) = (&*setup.problem, &*setup.fields);
         let shadow = Some(self.1(of.scene));
@@ -214,12 +223,12 @@ impl Draws for Connects {
     }
 }
 
-const fn particle(rule: ParticleRule) -> Particle {
-    Particle { rule, roulette: None, splitting: Splitting::None }
+const fn particle(rule: ParticleRule) -> ParticleSettings {
+    ParticleSettings { rule, roulette: None, splitting: Splitting::None }
 }
 
-const fn walks<P>(rule: ParticleRule) -> Walks<P> {
-    Walks(particle(rule), PhantomData)
+const fn walks<P>(rule: ParticleRule) -> SceneWalks<P> {
+    SceneWalks(particle(rule), PhantomData)
 }
 
 const fn rod(rule: ParticleRule) -> RuleAndRoulette {
@@ -243,25 +252,25 @@ const fn from_main(light: bool) -> Plan {
     plan(Technique::Vertices(Vertices { light, main: true, ..Vertices::FROM_LIGHT }))
 }
 
-const fn ratio(scene: &Scene) -> Tracking {
+const fn ratio(scene: &StressScene) -> Tracking {
     Tracking::Ratio { sampling: scene.collisions, control: 0.0 }
 }
 
-const fn delta(scene: &Scene) -> Tracking {
+const fn delta(scene: &StressScene) -> Tracking {
     Tracking::Delta { sampling: scene.collisions }
 }
 
 /// Problem, medium, further settings and channel of a case; an empty channel is the first.
-type Asked = [&'static str; 4];
+type CaseParts = [&'static str; 4];
 
 /// An estimator in the list of its family.
-pub struct Entry {
+pub struct FamilyEntry {
     /// Its name.
     pub name: &'static str,
     /// Quantities that are varied.
     pub varied: &'static [Along],
     /// The problem.
-    pub asked: Asked,
+    pub asked: CaseParts,
     /// The estimator as a case has it.
     pub written: &'static str,
     /// True if the only decisions of a walk, if any, end it with the score 0; it is then kept from its end, see
@@ -272,30 +281,31 @@ pub struct Entry {
 }
 
 const fn entry(
-    (name, varied, asked): (&'static str, &'static [Along], Asked),
+    (name, varied, asked): (&'static str, &'static [Along], CaseParts),
     written: &'static str,
     is_kept: bool,
     draws: &'static dyn InBoth,
-) -> Entry {
-    Entry { name, varied, asked, written, is_kept, draws }
+) -> FamilyEntry {
+    FamilyEntry { name, varied, asked, written, is_kept, draws }
 }
 
 const EVERY: &[Along] = &Along::ALL;
 const NO_STEPS: &[Along] = &[Depth, Origin];
 
-const TRANSMITTANCE: Asked = ["transmittance", RAY, "", ""];
-const CURVE: Asked = ["transmittance", RAY, "distances = 2", ""];
-const FLIGHT: Asked = ["free-flight", RAY, "", ""];
-const ROD: Asked = ["rod", RAY, "albedo = 0.8\nforward = 0.7", "reflectance"];
-const SLAB: Asked = ["slab", RAY, SLANTED, "reflectance"];
+const TRANSMITTANCE: CaseParts = ["transmittance", RAY, "", ""];
+const CURVE: CaseParts = ["transmittance", RAY, "distances = 2", ""];
+const FLIGHT: CaseParts = ["free-flight", RAY, "", ""];
+const ROD: CaseParts = ["rod", RAY, "albedo = 0.8\nforward = 0.7", "reflectance"];
+const SLAB: CaseParts = ["slab", RAY, SLANTED, "reflectance"];
 const SLANTED: &str =
     "albedo = 0.8\nphase.henyey-greenstein.g = 0.5\nincidence.collimated.cosine = 0.6";
-const SINGLE: Asked = ["single-scattering", LIT, "", ""];
-const FURNACE: Asked = ["furnace", BALL, "albedo = 0.8\nphase.henyey-greenstein.g = 0.5", ""];
-const WHITE: Asked =
+const SINGLE: CaseParts = ["single-scattering", LIT, "", ""];
+const FURNACE: CaseParts = ["furnace", BALL, "albedo = 0.8\nphase.henyey-greenstein.g = 0.5", ""];
+const WHITE: CaseParts =
     ["lambertian", BALL, "albedo = 1\nphase.henyey-greenstein.g = 0.5", "path length"];
-const SKY: Asked = ["ball", BALL, "albedo = 0.8\nphase.isotropic = {}\nlight.environment = {}", ""];
-const INFINITE: Asked = [
+const SKY: CaseParts =
+    ["ball", BALL, "albedo = 0.8\nphase.isotropic = {}\nlight.environment = {}", ""];
+const INFINITE: CaseParts = [
     "infinite-medium",
     "ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 1 }\n\
      volume.constant.extinction = DEPTH",
@@ -303,14 +313,14 @@ const INFINITE: Asked = [
     "squared distance",
 ];
 
-const fn at_end(asked: Asked) -> Asked {
+const fn at_end(asked: CaseParts) -> CaseParts {
     let [problem, medium, settings, _] = asked;
     [problem, medium, settings, "transmittance"]
 }
 
 /// Transmittance by weights and decisions at collisions.
 #[rustfmt::skip] // one estimator, one line
-pub const PRODUCTS: &[Entry] = &[
+pub const PRODUCTS: &[FamilyEntry] = &[
     entry(("ratio", EVERY, TRANSMITTANCE), "ratio = { SAMPLING }", true, &Weighs(Weight)),
     entry(("residual-ratio", EVERY, TRANSMITTANCE), "residual-ratio = { control.constant = { value = DEPTH }, SAMPLING }", true, &Weighs(Weight)),
     entry(("woodcock", EVERY, TRANSMITTANCE), "woodcock = { SAMPLING }", true, &Woodcock),
@@ -324,7 +334,7 @@ pub const PRODUCTS: &[Entry] = &[
 
 /// Transmittance by other ways, half way along a curve, and distances of free flights.
 #[rustfmt::skip]
-pub const OTHERS: &[Entry] = &[
+pub const OTHERS: &[FamilyEntry] = &[
     entry(("ratio, local majorants", NO_STEPS, TRANSMITTANCE), "ratio = { CELLS }", true, &Weighs(Weight)),
     entry(("woodcock, local majorants", NO_STEPS, TRANSMITTANCE), "local-majorant = { CELLS }", true, &Local),
     entry(("curve, half way", EVERY, CURVE), "double = { SAMPLING }", true, &OnCurve),
@@ -335,7 +345,7 @@ pub const OTHERS: &[Entry] = &[
 
 /// Rods.
 #[rustfmt::skip]
-pub const RODS: &[Entry] = &[
+pub const RODS: &[FamilyEntry] = &[
     entry(("rod, analog", EVERY, ROD), "analog = { SAMPLING }", false, &rod(Analog)),
     entry(("rod, weighted", EVERY, ROD), "weighted = { SAMPLING }", false, &rod(Weighted)),
     entry(("rod, non-terminating", EVERY, ROD), "non-terminating = { SAMPLING }", false, &rod(NonTerminating)),
@@ -345,7 +355,7 @@ pub const RODS: &[Entry] = &[
 
 /// Slabs that scatter forward, under light from the side.
 #[rustfmt::skip]
-pub const SLABS: &[Entry] = &[
+pub const SLABS: &[FamilyEntry] = &[
     entry(("slab, analog", EVERY, SLAB), "analog = { SAMPLING }", false, &InLayers(Analog)),
     entry(("slab, weighted", EVERY, SLAB), "weighted = { SAMPLING }", false, &InLayers(Weighted)),
     entry(("slab, non-terminating", EVERY, SLAB), "non-terminating = { SAMPLING }", false, &InLayers(NonTerminating)),
@@ -354,25 +364,25 @@ pub const SLABS: &[Entry] = &[
 
 /// Single scattering.
 #[rustfmt::skip]
-pub const POINTS: &[Entry] = &[
-    entry(("source-driven", NO_STEPS, SINGLE), "source-driven = {}", false, &Planned(|_| points(CameraTracking::Exact, Tracking::Exact))),
-    entry(("source-driven, ratio", EVERY, SINGLE), "source-driven = { camera = \"ratio\", shadow.ratio = { sampling = COLLISIONS }, SAMPLING }", false, &Planned(|scene| points(CameraTracking::Ratio, ratio(scene)))),
-    entry(("source-driven, delta", EVERY, SINGLE), "source-driven = { camera = \"delta\", shadow.delta = { sampling = COLLISIONS }, SAMPLING }", true, &Planned(|scene| points(CameraTracking::Delta, delta(scene)))),
-    entry(("scattering-driven", NO_STEPS, SINGLE), "scattering-driven = { control.constant = { value = DEPTH } }", false, &Planned(|_| from_main(false))),
-    entry(("delta-tracking", EVERY, SINGLE), "delta-tracking = { SAMPLING }", false, &Planned(|_| collides(false))),
-    entry(("attenuation-driven", EVERY, SINGLE), "attenuation-driven = { SAMPLING }", false, &Planned(|_| plan(Technique::Interactions))),
-    entry(("attenuation-resampled", EVERY, SINGLE), "attenuation-resampled = { SAMPLING }", false, &Planned(|_| plan(Technique::Resampled))),
-    entry(("shared-walk", EVERY, SINGLE), "shared-walk = { points = 4, SAMPLING }", false, &Planned(|_| plan(Technique::Shared(4)))),
-    entry(("source-scattering-mis", NO_STEPS, SINGLE), "source-scattering-mis = { control.constant = { value = DEPTH } }", false, &Planned(|_| from_main(true))),
-    entry(("source-delta-mis", EVERY, SINGLE), "source-delta-mis = { SAMPLING }", false, &Planned(|_| collides(true))),
+pub const POINTS: &[FamilyEntry] = &[
+    entry(("source-driven", NO_STEPS, SINGLE), "source-driven = {}", false, &PlannedScattering(|_| points(CameraTracking::Exact, Tracking::Exact))),
+    entry(("source-driven, ratio", EVERY, SINGLE), "source-driven = { camera = \"ratio\", shadow.ratio = { sampling = COLLISIONS }, SAMPLING }", false, &PlannedScattering(|scene| points(CameraTracking::Ratio, ratio(scene)))),
+    entry(("source-driven, delta", EVERY, SINGLE), "source-driven = { camera = \"delta\", shadow.delta = { sampling = COLLISIONS }, SAMPLING }", true, &PlannedScattering(|scene| points(CameraTracking::Delta, delta(scene)))),
+    entry(("scattering-driven", NO_STEPS, SINGLE), "scattering-driven = { control.constant = { value = DEPTH } }", false, &PlannedScattering(|_| from_main(false))),
+    entry(("delta-tracking", EVERY, SINGLE), "delta-tracking = { SAMPLING }", false, &PlannedScattering(|_| collides(false))),
+    entry(("attenuation-driven", EVERY, SINGLE), "attenuation-driven = { SAMPLING }", false, &PlannedScattering(|_| plan(Technique::Interactions))),
+    entry(("attenuation-resampled", EVERY, SINGLE), "attenuation-resampled = { SAMPLING }", false, &PlannedScattering(|_| plan(Technique::Resampled))),
+    entry(("shared-walk", EVERY, SINGLE), "shared-walk = { points = 4, SAMPLING }", false, &PlannedScattering(|_| plan(Technique::Shared(4)))),
+    entry(("source-scattering-mis", NO_STEPS, SINGLE), "source-scattering-mis = { control.constant = { value = DEPTH } }", false, &PlannedScattering(|_| from_main(true))),
+    entry(("source-delta-mis", EVERY, SINGLE), "source-delta-mis = { SAMPLING }", false, &PlannedScattering(|_| collides(true))),
 ];
 
 /// Balls, and an infinite medium with a source at the origin.
 #[rustfmt::skip]
-pub const SPACE: &[Entry] = &[
+pub const SPACE: &[FamilyEntry] = &[
     entry(("furnace, analog", EVERY, FURNACE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Furnace>(Analog)),
     entry(("furnace, weighted", EVERY, FURNACE), "particle = { rule = \"weighted\", SAMPLING }", false, &walks::<Furnace>(Weighted)),
-    entry(("furnace, splitting", EVERY, FURNACE), "splitting = { depth = 3, rule = \"analog\", SAMPLING }", false, &Walks::<Furnace, true>(Particle { splitting: Splitting::Depth(3), ..particle(Analog) }, PhantomData)),
+    entry(("furnace, splitting", EVERY, FURNACE), "splitting = { depth = 3, rule = \"analog\", SAMPLING }", false, &SceneWalks::<Furnace, true>(ParticleSettings { splitting: Splitting::Depth(3), ..particle(Analog) }, PhantomData)),
     entry(("lambertian, analog", EVERY, WHITE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Lambertian>(Analog)),
     entry(("infinite medium, analog", &[Steps], INFINITE), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<InfiniteMedium>(Analog)),
     entry(("sphere, particle", EVERY, SKY), "particle = { rule = \"analog\", SAMPLING }", false, &walks::<Sphere>(Analog)),

@@ -22,14 +22,14 @@ const FIRST_UNREAD: u8 = 8;
 
 /// A rectangle of pixels, its ends included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Window {
+pub struct PixelWindow {
     /// The first column and row.
     pub low: [i32; 2],
     /// The last column and row.
     pub high: [i32; 2],
 }
 
-impl Window {
+impl PixelWindow {
     /// Columns and rows.
     pub fn size(&self) -> [usize; 2] {
         let count = |axis: usize| i64::from(self.high[axis]) - i64::from(self.low[axis]) + 1;
@@ -37,7 +37,7 @@ impl Window {
     }
 }
 
-impl std::fmt::Display for Window {
+impl std::fmt::Display for PixelWindow {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let ([left, top], [right, bottom]) = (self.low, self.high);
         write!(f, "({left}, {top}) to ({right}, {bottom})")
@@ -46,7 +46,7 @@ impl std::fmt::Display for Window {
 
 /// A channel of a part.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Channel {
+pub struct ExrChannel {
     /// Name, such as `R` or `diffuse.R`.
     pub name: String,
     /// `uint32`, `float16` or `float32`.
@@ -57,7 +57,7 @@ pub struct Channel {
 
 /// Contents of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Part {
+pub struct ExrPart {
     /// Name; empty in a file of one part without a name.
     pub name: String,
     /// `scan lines`, `tiles`, `deep scan lines` or `deep tiles`.
@@ -67,14 +67,14 @@ pub struct Part {
     /// True if the compression is supported.
     pub is_read: bool,
     /// The pixels that are stored.
-    pub data: Window,
+    pub data: PixelWindow,
     /// The picture.
-    pub display: Window,
+    pub display: PixelWindow,
     /// Channels, by name.
-    pub channels: Vec<Channel>,
+    pub channels: Vec<ExrChannel>,
 }
 
-impl Part {
+impl ExrPart {
     /// Returns whether pixels have several samples each.
     pub fn is_deep(&self) -> bool {
         self.kind.starts_with("deep")
@@ -86,11 +86,11 @@ impl Part {
 /// # Errors
 ///
 /// What is wrong with the headers.
-pub fn parts(bytes: &[u8]) -> Result<Vec<Part>, String> {
+pub fn parts(bytes: &[u8]) -> Result<Vec<ExrPart>, String> {
     all(&mut Bytes::new(bytes)).map_err(|fault| fault.message)
 }
 
-fn all(bytes: &mut Bytes) -> Result<Vec<Part>, Unreadable> {
+fn all(bytes: &mut Bytes) -> Result<Vec<ExrPart>, Unreadable> {
     if bytes.number().ok() != Some(0x0131_2f76) {
         return damaged("it does not begin as OpenEXR files do");
     }
@@ -113,16 +113,16 @@ fn all(bytes: &mut Bytes) -> Result<Vec<Part>, Unreadable> {
     Ok(parts)
 }
 
-fn window(value: &[u8]) -> Result<Window, Unreadable> {
+fn window(value: &[u8]) -> Result<PixelWindow, Unreadable> {
     let [left, top, right, bottom] = Bytes::new(value).integers()?;
-    let window = Window { low: [left, top], high: [right, bottom] };
+    let window = PixelWindow { low: [left, top], high: [right, bottom] };
     if window.size().contains(&0) {
         return damaged(format!("its window {window} holds no pixel"));
     }
     Ok(window)
 }
 
-fn part(bytes: &mut Bytes, usual: &'static str) -> Result<Part, Unreadable> {
+fn part(bytes: &mut Bytes, usual: &'static str) -> Result<ExrPart, Unreadable> {
     let (mut name, mut kind, mut code) = (String::new(), usual, None);
     let (mut data, mut display, mut list) = (None, None, None);
     loop {
@@ -157,10 +157,10 @@ fn part(bytes: &mut Bytes, usual: &'static str) -> Result<Part, Unreadable> {
     };
     let known = COMPRESSIONS.get(usize::from(code));
     let compression = known.map_or_else(|| format!("number {code}"), |name| (*name).to_owned());
-    Ok(Part { name, kind, compression, is_read: code < FIRST_UNREAD, data, display, channels })
+    Ok(ExrPart { name, kind, compression, is_read: code < FIRST_UNREAD, data, display, channels })
 }
 
-fn channels(value: &[u8]) -> Result<Vec<Channel>, Unreadable> {
+fn channels(value: &[u8]) -> Result<Vec<ExrChannel>, Unreadable> {
     let (mut bytes, mut channels) = (Bytes::new(value), Vec::new());
     loop {
         let name = String::from_utf8_lossy(bytes.terminated()?).into_owned();
@@ -174,6 +174,6 @@ fn channels(value: &[u8]) -> Result<Vec<Channel>, Unreadable> {
             other => return damaged(format!("its channel {name} has the type {other}")),
         };
         let [_, x, y] = bytes.integers()?;
-        channels.push(Channel { name, kind, sampling: [x, y] });
+        channels.push(ExrChannel { name, kind, sampling: [x, y] });
     }
 }

@@ -19,8 +19,8 @@ use exr::block::reader::ChunksReader;
 use exr::prelude::{SampleType, Vec2};
 
 use super::Pixels;
-use super::number::Number;
-pub use header::{Channel, Part, Window, parts};
+use super::number::NumberType;
+pub use header::{ExrChannel, ExrPart, PixelWindow, parts};
 
 /// Maximum number of values of a picture: 2 GiB in memory.
 const MAX_VALUES: usize = 1 << 28;
@@ -144,8 +144,8 @@ pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
 
 /// Refuses what the crate does not read, with its name. The crate reads no file that has a deep part, even if
 /// another part is wanted.
-fn refuse(parts: &[Part]) -> Result<(), String> {
-    let named = |part: &Part| match parts.len() {
+fn refuse(parts: &[ExrPart]) -> Result<(), String> {
+    let named = |part: &ExrPart| match parts.len() {
         1 => String::new(),
         _ => format!(" (part \"{}\")", part.name),
     };
@@ -159,7 +159,7 @@ fn refuse(parts: &[Part]) -> Result<(), String> {
             named(packed)
         ));
     }
-    let thin = |channel: &&Channel| channel.sampling != [1, 1];
+    let thin = |channel: &&ExrChannel| channel.sampling != [1, 1];
     if let Some(thin) = parts.iter().flat_map(|part| &part.channels).find(thin) {
         return Err(format!("its channel {} has not a value for each pixel", thin.name));
     }
@@ -167,8 +167,8 @@ fn refuse(parts: &[Part]) -> Result<(), String> {
 }
 
 /// The type of a channel's numbers: the crate keeps the byte order of the file, low bytes first.
-fn number(kind: SampleType) -> Option<Number> {
-    Number::named(match kind {
+fn number(kind: SampleType) -> Option<NumberType> {
+    NumberType::named(match kind {
         SampleType::F16 => "<f2",
         SampleType::F32 => "<f4",
         SampleType::U32 => "<u4",

@@ -16,7 +16,7 @@ const CLASSES: &str =
 
 /// Entry of a grid in a file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Listed {
+pub struct NvdbEntry {
     /// Name: `density`, or `density[1]` where several grids have the same name.
     pub name: String,
     /// Type, such as `Float`.
@@ -36,10 +36,10 @@ pub struct Listed {
     pub(super) place: [usize; 2],
 }
 
-impl Listed {
+impl NvdbEntry {
     /// Returns whether [`super::read`] supports the type.
     pub fn is_read(&self) -> bool {
-        nodes::Values::of(self.number).is_some()
+        nodes::LeafValues::of(self.number).is_some()
     }
 
     /// Name in a list of grids, with the type if that is not supported.
@@ -64,7 +64,7 @@ fn named(list: &str, number: u32) -> String {
 /// # Errors
 ///
 /// The file is not one of the kind that is described above.
-pub fn list(file: &[u8]) -> Result<Vec<Listed>, Unreadable> {
+pub fn list(file: &[u8]) -> Result<Vec<NvdbEntry>, Unreadable> {
     if file.starts_with(b"NanoVDB1") {
         return Ok(vec![raw(file)?]);
     }
@@ -74,7 +74,7 @@ pub fn list(file: &[u8]) -> Result<Vec<Listed>, Unreadable> {
             "write it on a little-endian machine",
         );
     }
-    let (mut listed, mut at) = (Vec::<Listed>::new(), 0);
+    let (mut listed, mut at) = (Vec::<NvdbEntry>::new(), 0);
     while at < file.len() {
         at = segment(file, at, &mut listed)?;
     }
@@ -108,7 +108,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 /// Lists a segment's grids; returns the place of the next segment.
-fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Unreadable> {
+fn segment(file: &[u8], at: usize, listed: &mut Vec<NvdbEntry>) -> Result<usize, Unreadable> {
     let mut bytes = Bytes::at_byte(file, at);
     if !matches!(bytes.take(8), Ok(b"NanoVDB0" | b"NanoVDB2")) {
         let place = if at == 0 { String::new() } else { format!(" at byte {at}") };
@@ -140,7 +140,7 @@ fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Un
             other => return damaged(format!("its grid {} has the codec {other}", shown(&name))),
         };
         lengths.push(length);
-        listed.push(Listed {
+        listed.push(NvdbEntry {
             name,
             kind: named(TYPES, number),
             class: named(CLASSES, class),
@@ -164,7 +164,7 @@ fn segment(file: &[u8], at: usize, listed: &mut Vec<Listed>) -> Result<usize, Un
 }
 
 /// A grid as it is in memory, without a header of the file.
-fn raw(file: &[u8]) -> Result<Listed, Unreadable> {
+fn raw(file: &[u8]) -> Result<NvdbEntry, Unreadable> {
     let at = |place| Bytes::at_byte(file, place);
     let (version, size) = (supported(at(16).number()?)?, at(32).word()?);
     let (name, mut types) = (text(at(40).take(256)?), at(632));
@@ -172,7 +172,7 @@ fn raw(file: &[u8]) -> Result<Listed, Unreadable> {
     let Some(end) = usize::try_from(size).ok().filter(|&end| end <= file.len()) else {
         return damaged(format!("it ends at byte {}, within its grid of {size} bytes", file.len()));
     };
-    Ok(Listed {
+    Ok(NvdbEntry {
         name,
         kind: named(TYPES, number),
         class: named(CLASSES, class),

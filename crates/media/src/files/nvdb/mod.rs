@@ -24,9 +24,9 @@ mod nodes;
 mod unpacking;
 
 use super::bytes::Bytes;
-use super::vdb::{Grid, Transform};
+use super::vdb::{Transform, VdbGrid};
 use super::{Unreadable, chosen, damaged, shown, wrong};
-pub use listing::{Listed, list};
+pub use listing::{NvdbEntry, list};
 
 /// Bytes before the tree.
 const GRID: usize = 672;
@@ -38,11 +38,11 @@ const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read
 /// # Errors
 ///
 /// The file is not one of the kind that is described above, or has no such grid.
-pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Unreadable> {
+pub fn read(file: &[u8], name: Option<&str>) -> Result<VdbGrid, Unreadable> {
     let grids = list(file)?;
-    let about = |grid: &Listed| (grid.name.clone(), grid.is_read(), grid.shown());
+    let about = |grid: &NvdbEntry| (grid.name.clone(), grid.is_read(), grid.shown());
     let found = chosen(&grids, name, about, CONVERT)?;
-    let Some(values) = nodes::Values::of(found.number) else {
+    let Some(values) = nodes::LeafValues::of(found.number) else {
         let message = format!("its grid {} has the type {}", shown(&found.name), found.kind);
         return wrong(message, CONVERT);
     };
@@ -54,7 +54,7 @@ pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Unreadable> {
         return damaged(format!("{said} voxels are announced to be active, and {found} are"));
     }
     let (name, class) = (found.name.clone(), found.class.clone());
-    Ok(Grid { name, class, transform: transform(&grid)?, tree })
+    Ok(VdbGrid { name, class, transform: transform(&grid)?, tree })
 }
 
 /// The map in double precision, 296 bytes from the beginning of a grid.

@@ -19,7 +19,7 @@ use super::{Bytes, GRID, Unreadable, damaged};
 
 /// Storage of the values of leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Values {
+pub(super) enum LeafValues {
     /// float32.
     Whole,
     /// Codes of `2^log` bits.
@@ -31,7 +31,7 @@ pub(super) enum Values {
     Varied,
 }
 
-impl Values {
+impl LeafValues {
     /// The values of a type.
     pub(super) fn of(kind: u32) -> Option<Self> {
         match kind {
@@ -60,20 +60,20 @@ struct Level {
 const LEVELS: [Level; 2] =
     [Level { log: 5, table: 8256, edge: EDGES[1] }, Level { log: 4, table: 1088, edge: EDGES[2] }];
 
-struct Reader<'a> {
+struct NodeReader<'a> {
     bytes: &'a [u8],
-    values: Values,
+    values: LeafValues,
     tree: Growing,
     /// Bytes of the nodes that were visited.
     visited: usize,
 }
 
 /// Reads the tree of a grid.
-pub(super) fn read(bytes: &[u8], values: Values) -> Result<Tree, Unreadable> {
+pub(super) fn read(bytes: &[u8], values: LeafValues) -> Result<Tree, Unreadable> {
     let root = from(GRID, Bytes::at_byte(bytes, GRID + 24).word()?.cast_signed())?;
     let mut head = Bytes::at_byte(bytes, root + 24);
     let (tiles, background) = (head.number()?, head.float()?);
-    let mut reader = Reader { bytes, values, tree: Growing::new(background), visited: 0 };
+    let mut reader = NodeReader { bytes, values, tree: Growing::new(background), visited: 0 };
     for tile in 0..tiles as usize {
         reader.root_tile(root, root + ROOT_HEAD + ROOT_TILE * tile)?;
     }
@@ -89,7 +89,7 @@ fn from(place: usize, distance: i64) -> Result<usize, Unreadable> {
     }
 }
 
-impl Reader<'_> {
+impl NodeReader<'_> {
     fn root_tile(&mut self, root: usize, at: usize) -> Result<(), Unreadable> {
         let mut tile = Bytes::at_byte(self.bytes, at);
         let key = tile.word()?;
@@ -139,19 +139,19 @@ impl Reader<'_> {
         let mut bytes = Bytes::at_byte(self.bytes, at);
         let head = bytes.take(LEAF_HEAD)?;
         let log = match self.values {
-            Values::Whole => 5,
-            Values::Codes { log } => log,
-            Values::Varied => u32::from(head[15] >> 5),
+            LeafValues::Whole => 5,
+            LeafValues::Codes { log } => log,
+            LeafValues::Varied => u32::from(head[15] >> 5),
         };
         let count = usize::try_from(LEAF * LEAF * LEAF).unwrap_or_default();
-        if log > 5 || (log == 5 && self.values != Values::Whole) {
+        if log > 5 || (log == 5 && self.values != LeafValues::Whole) {
             return damaged(format!("the values of the leaf at {origin:?} have 2^{log} bits"));
         }
         let size = (count << log) / 8;
         self.visit(LEAF_HEAD + size)?;
         let stored = bytes.take(size)?;
         self.tree.tree.active += count_on(&head[16..80]) as u64;
-        let values = if self.values == Values::Whole {
+        let values = if self.values == LeafValues::Whole {
             stored.as_chunks::<4>().0.iter().map(|&word| f32::from_le_bytes(word)).collect()
         } else {
             let [minimum, quantum] = Bytes::at_byte(head, 80).floats()?;

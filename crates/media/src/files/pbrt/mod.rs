@@ -19,4 +19,4 @@ mod moved;
 mod scene;
 mod words;
 
-pub use scene::{Grid, Named, grids, read};
+pub use scene::{NamedMedium, PbrtGrid, grids, read};

@@ -6,7 +6,7 @@ use super::words::{Word, Words};
 
 /// A grid of densities in a box.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct PbrtGrid {
     /// The name of the medium.
     pub name: String,
     /// Samples along x, y and z.
@@ -33,14 +33,14 @@ struct Medium {
 const ADVICE: &str = "give one, as in MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" [ 64 ] …";
 
 /// A medium by its name.
-pub type Named = (String, Result<Grid, Unreadable>);
+pub type NamedMedium = (String, Result<PbrtGrid, Unreadable>);
 
 /// The media of a scene file that are grids, or the errors in them.
 ///
 /// # Errors
 ///
 /// The text is no scene file, or has no medium.
-pub fn grids(text: &str) -> Result<Vec<Named>, Unreadable> {
+pub fn grids(text: &str) -> Result<Vec<NamedMedium>, Unreadable> {
     let (media, included) = media(text)?;
     if media.is_empty() {
         return match included {
@@ -59,9 +59,9 @@ pub fn grids(text: &str) -> Result<Vec<Named>, Unreadable> {
 /// # Errors
 ///
 /// The file has no such medium.
-pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Unreadable> {
+pub fn read(text: &str, name: Option<&str>) -> Result<PbrtGrid, Unreadable> {
     let mut media = grids(text)?;
-    let list = |media: &[Named]| {
+    let list = |media: &[NamedMedium]| {
         media.iter().map(|(name, _)| shown(name)).take(20).collect::<Vec<_>>().join(", ")
     };
     if let Some(name) = name {
@@ -191,7 +191,7 @@ fn medium(words: &mut Words, moved: Moved) -> Result<Medium, Unreadable> {
 }
 
 impl Medium {
-    fn grid(self) -> Result<Grid, Unreadable> {
+    fn grid(self) -> Result<PbrtGrid, Unreadable> {
         let refuse = |what: &str, help: &str| {
             wrong(format!("medium {} in line {} {what}", shown(&self.name), self.line), help)
         };
@@ -249,6 +249,6 @@ impl Medium {
         let size = [x, y, z];
         // p0 and p1 are corners in any order, but the samples begin at the lowest; a mirror reverses them.
         let density = mirrored(density, size, scale.map(|x| x < 0.0));
-        Ok(Grid { name: self.name, size, corners, density })
+        Ok(PbrtGrid { name: self.name, size, corners, density })
     }
 }

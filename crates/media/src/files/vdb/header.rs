@@ -12,7 +12,7 @@ const FLOATS: &str = "Tree_float_5_4_3";
 const HALVES: &str = "_HalfFloat";
 
 /// Entry before each grid.
-pub(super) struct Entry {
+pub(super) struct GridHeader {
     /// Name, with the number that `OpenVDB` adds to equal names.
     pub(super) key: String,
     pub(super) kind: String,
@@ -22,7 +22,7 @@ pub(super) struct Entry {
     pub(super) places: [usize; 3],
 }
 
-impl Entry {
+impl GridHeader {
     pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Unreadable> {
         let [key, kind, parent] = [bytes.text()?, bytes.text()?, bytes.text()?];
         let [begin, blocks, end] = bytes.words()?;
@@ -70,7 +70,7 @@ impl Entry {
 }
 
 /// The header, and the entry before each grid.
-pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Unreadable> {
+pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<GridHeader>, Unreadable> {
     if !matches!(bytes.take(8), Ok(b" BDV\0\0\0\0")) {
         return wrong("it does not begin as OpenVDB's files do", "write it by OpenVDB");
     }
@@ -97,7 +97,7 @@ pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Unreadable> {
     metadata(bytes, |_, _, _| Ok(()))?;
     let mut entries = Vec::new();
     for _ in 0..bytes.number()? {
-        let entry = Entry::read(bytes)?;
+        let entry = GridHeader::read(bytes)?;
         bytes.seek(entry.places[2]);
         entries.push(entry);
     }
@@ -130,7 +130,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    pub(super) fn read(bytes: &mut Bytes, entry: &Entry) -> Result<Self, Unreadable> {
+    pub(super) fn read(bytes: &mut Bytes, entry: &GridHeader) -> Result<Self, Unreadable> {
         bytes.seek(entry.places[0]);
         let compression = bytes.number()?;
         let (mut class, mut voxels) = (String::new(), None);

@@ -25,7 +25,7 @@ mod transform;
 mod tree;
 
 pub(in crate::files) use blosc::unpack as unpack_blosc;
-use header::{Entry, Head};
+use header::{GridHeader, Head};
 use packing::Packing;
 pub(in crate::files) use packing::{count_on, is_on};
 pub use transform::Transform;
@@ -38,7 +38,7 @@ use super::{chosen, damaged, shown, wrong};
 
 /// A grid of floats.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct VdbGrid {
     /// Name.
     pub name: String,
     /// Class from the metadata, such as `fog volume` or `level set`; empty without one.
@@ -51,7 +51,7 @@ pub struct Grid {
 
 /// Entry of a grid in a file, without its tree.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Listed {
+pub struct VdbEntry {
     /// Name.
     pub name: String,
     /// Type, such as `Tree_float_5_4_3`.
@@ -67,7 +67,7 @@ pub struct Listed {
 }
 
 /// An entry, or the name of a grid and the fault of its beginning.
-pub type Entered = Result<Listed, (String, Unreadable)>;
+pub type Entered = Result<VdbEntry, (String, Unreadable)>;
 
 /// Lists the grids of a file.
 ///
@@ -80,7 +80,7 @@ pub fn list(file: &[u8]) -> Result<Vec<Entered>, Unreadable> {
     let mut listed = Vec::new();
     for entry in &entries {
         let head = Head::read(&mut bytes, entry);
-        listed.push(head.map_err(|fault| (entry.name(), fault)).map(|head| Listed {
+        listed.push(head.map_err(|fault| (entry.name(), fault)).map(|head| VdbEntry {
             name: entry.name(),
             kind: entry.kind.clone(),
             class: head.class,
@@ -97,10 +97,10 @@ pub fn list(file: &[u8]) -> Result<Vec<Entered>, Unreadable> {
 /// # Errors
 ///
 /// The file is not one of the kind that is described above, or has no such grid.
-pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Unreadable> {
+pub fn read(file: &[u8], name: Option<&str>) -> Result<VdbGrid, Unreadable> {
     let mut bytes = Bytes::new(file);
     let entries = header::entries(&mut bytes)?;
-    let about = |entry: &Entry| (entry.name(), entry.has_floats(), entry.shown());
+    let about = |entry: &GridHeader| (entry.name(), entry.has_floats(), entry.shown());
     let entry = chosen(&entries, name, about, CONVERT)?;
     if !entry.has_floats() {
         let message =
@@ -112,7 +112,11 @@ pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Unreadable> {
 
 const CONVERT: &str = "a grid of the type Tree_float_5_4_3 is read: OpenVDB's FloatGrid";
 
-fn grid(bytes: &mut Bytes, entry: &Entry, entries: &[Entry]) -> Result<Grid, Unreadable> {
+fn grid(
+    bytes: &mut Bytes,
+    entry: &GridHeader,
+    entries: &[GridHeader],
+) -> Result<VdbGrid, Unreadable> {
     let own = Head::read(bytes, entry)?;
     // A grid that shares its tree has only a transform.
     let (head, owner) = if entry.parent.is_empty() {
@@ -138,5 +142,5 @@ fn grid(bytes: &mut Bytes, entry: &Entry, entries: &[Entry]) -> Result<Grid, Unr
             "the file is damaged, or its `file_voxel_count` is another grid's: write it anew",
         );
     }
-    Ok(Grid { name: entry.name(), class: own.class, transform: own.transform, tree })
+    Ok(VdbGrid { name: entry.name(), class: own.class, transform: own.transform, tree })
 }

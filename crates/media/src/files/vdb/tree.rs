@@ -74,7 +74,7 @@ impl Tree {
             return damaged(format!("its tree has {buffers} buffers instead of one"));
         }
         let tree = Growing::new(bytes.float()?);
-        let mut reader = Reader { bytes, packing, tree, masks: Vec::new() };
+        let mut reader = TreeReader { bytes, packing, tree, masks: Vec::new() };
         reader.root()?;
         if reader.bytes.at() != blocks {
             return damaged("the topology of its tree does not end where its values begin");
@@ -124,7 +124,7 @@ impl Growing {
     }
 }
 
-struct Reader<'a, 'b> {
+struct TreeReader<'a, 'b> {
     bytes: &'b mut Bytes<'a>,
     packing: Packing,
     tree: Growing,
@@ -132,7 +132,7 @@ struct Reader<'a, 'b> {
     masks: Vec<&'a [u8]>,
 }
 
-impl Reader<'_, '_> {
+impl TreeReader<'_, '_> {
     fn root(&mut self) -> Result<(), Unreadable> {
         let (tiles, children) = (self.bytes.number()?, self.bytes.number()?);
         let mut origins = BTreeSet::new();

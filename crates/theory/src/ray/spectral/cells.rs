@@ -8,7 +8,7 @@ const MAX_ATOMS: usize = 300_000;
 const CONSTANT: f64 = 1e-13;
 
 /// The largest rate times the length of a cell, and the rates relative to the largest.
-pub type Cell = (f64, Vec<f64>);
+pub type CellRates = (f64, Vec<f64>);
 
 impl Spectrum {
     /// Distribution of MIS with delta tracking through a medium that is constant in each cell: scores of survivors,
@@ -20,7 +20,7 @@ impl Spectrum {
     ///
     /// Cells with proportional n are merged.
     pub(super) fn cells(&self) -> Option<Vec<(f64, Vec<f64>)>> {
-        let mut cells = Vec::<Cell>::new();
+        let mut cells = Vec::<CellRates>::new();
         let scale = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x));
         for (panel, here) in self.mesh.numbered() {
             let of_channel = |nulls: &Vec<f64>| {
@@ -38,15 +38,16 @@ impl Spectrum {
 
 /// Merges an interval with the cells that have proportional rates. An interval with rates of at most `nothing` is
 /// left out.
-pub fn join(cells: &mut Vec<Cell>, nothing: f64, length: f64, rates: &[f64]) {
+pub fn join(cells: &mut Vec<CellRates>, nothing: f64, length: f64, rates: &[f64]) {
     let largest = rates.iter().fold(0.0f64, |most, &n| most.max(n));
     if largest <= nothing {
         return;
     }
     let direction: Vec<f64> = rates.iter().map(|n| (n / largest).max(0.0)).collect();
     let length = length * largest;
-    let like =
-        |cell: &&mut Cell| cell.1.iter().zip(&direction).all(|(a, b)| (a - b).abs() <= CONSTANT);
+    let like = |cell: &&mut CellRates| {
+        cell.1.iter().zip(&direction).all(|(a, b)| (a - b).abs() <= CONSTANT)
+    };
     match cells.iter_mut().find(like) {
         Some(cell) => cell.0 += length,
         None => cells.push((length, direction)),
@@ -63,7 +64,11 @@ pub fn join(cells: &mut Vec<Cell>, nothing: f64, length: f64, rates: &[f64]) {
 /// ```text
 /// P X⁴/T⁴ ≤ l^m/m! p e^{Σ l d}/T (wT)^{−3}
 /// ```
-pub fn balanced(cells: &[Cell], begin: Vec<f64>, heroes: &[f64]) -> Option<Vec<(f64, Vec<f64>)>> {
+pub fn balanced(
+    cells: &[CellRates],
+    begin: Vec<f64>,
+    heroes: &[f64],
+) -> Option<Vec<(f64, Vec<f64>)>> {
     let mean =
         |densities: &[f64]| -> f64 { heroes.iter().zip(densities).map(|(w, p)| w * p).sum() };
     // e^{Σ l d} of all cells from one on.

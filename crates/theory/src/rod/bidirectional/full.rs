@@ -8,9 +8,9 @@
 //! `exp(−z cⱼ^{−β})`, which depends on the flight and on the turns at both of its ends. The integral over z is the
 //! trapezoidal rule in ln z, with an error that falls as `e^{−π²/h}`.
 
-use super::grid::Grid;
+use super::grid::NodeGrid;
 use super::paths::Chain;
-use super::{Connection, Scene};
+use super::{Connection, RodScene};
 use crate::light::Heuristic;
 use crate::prediction::raw::{HIGHEST, Powers};
 
@@ -21,9 +21,9 @@ const FAINT: f64 = 1e-18;
 
 /// Adds `E[X_s^k]`, k = 1 … 8, of the techniques s = 0 … r + 2 of each order.
 pub fn add(
-    scene: &Scene,
+    scene: &RodScene,
     (connection, heuristic): (Connection, Heuristic),
-    grid: &Grid,
+    grid: &NodeGrid,
     step: f64,
     sums: &mut [Vec<Powers>],
 ) {

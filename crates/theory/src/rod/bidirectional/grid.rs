@@ -4,7 +4,7 @@ use numeric::quadrature::GaussLegendre;
 use numeric::{Scalar, Span};
 
 /// Values at the Gauss–Legendre nodes of `[0, τ]`: polynomials between them.
-pub struct Grid {
+pub struct NodeGrid {
     /// The nodes u, optical depths from the beginning of the rod, ascending.
     pub points: Vec<f64>,
     weights: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct Operator<S = f64> {
     size: usize,
 }
 
-impl Grid {
+impl NodeGrid {
     /// A grid of `size` nodes on `[0, depth]`.
     pub fn new(depth: f64, size: usize) -> Self {
         let rule = GaussLegendre::new(size);
@@ -104,7 +104,7 @@ mod tests {
     fn flights_are_integrals_on_both_sides() {
         // ∫₀^u e^{−(u − v)} cos v dv = (sin u + cos u − e^{−u})/2, and mirrored.
         for size in [20, 21] {
-            let grid = Grid::new(2.0, size);
+            let grid = NodeGrid::new(2.0, size);
             let flights = grid.operator(|d| (-d).exp());
             let exact = |u: f64| 0.5 * (u.sin() + u.cos() - (-u).exp());
             let found = flights.over(true, &grid.values(f64::cos));

@@ -7,15 +7,15 @@
 //!
 //! All are power series in y up to y⁴; their coefficients are factorial moments.
 
-use super::grid::{Grid, Operator};
-use super::{Connection, Scene};
+use super::grid::{NodeGrid, Operator};
+use super::{Connection, RodScene};
 use crate::prediction::raw::{self, Raw};
 use numeric::{Jet, Scalar};
 
 /// Coefficients of y⁰ … y⁴.
 type Series = Jet<5>;
 /// A series at each node of a grid.
-type Field = Vec<Series>;
+type NodeSeries = Vec<Series>;
 
 const TURNS: [bool; 2] = [false, true];
 
@@ -37,34 +37,39 @@ fn exponential(depth: f64, x: f64) -> Series {
 }
 
 /// The sum of two fields.
-fn sum(a: &[Series], b: &[Series]) -> Field {
+fn sum(a: &[Series], b: &[Series]) -> NodeSeries {
     a.iter().zip(b).map(|(&a, &b)| a + b).collect()
 }
 
 /// `(1 + y)` times a field.
-fn looked_up(field: &[Series]) -> Field {
+fn looked_up(field: &[Series]) -> NodeSeries {
     field.iter().map(|&series| Series::mark() * series).collect()
 }
 
 /// Walks from one end of the rod; walks from the other end are their mirror images.
 pub struct Walks<'a> {
-    scene: &'a Scene,
-    grid: &'a Grid,
+    scene: &'a RodScene,
+    grid: &'a NodeGrid,
     /// ν.
     nulls: f64,
     /// `σ̂/σ_t` where connections are tracked, else 0.
     tracked: f64,
     /// Walks that arrive at each scattering, from the first on, flying backward and forward.
-    arriving: Vec<[Field; 2]>,
+    arriving: Vec<[NodeSeries; 2]>,
     /// Connections of two places.
     connections: Operator<Series>,
     /// Flights that end in the rod, from each node backward and forward.
-    collided: [Field; 2],
+    collided: [NodeSeries; 2],
 }
 
 impl<'a> Walks<'a> {
     /// Walks with up to as many scatterings as the scene has, for this value of `σ_t/σ̂`.
-    pub fn new(scene: &'a Scene, connection: Connection, ratio: f64, grid: &'a Grid) -> Self {
+    pub fn new(
+        scene: &'a RodScene,
+        connection: Connection,
+        ratio: f64,
+        grid: &'a NodeGrid,
+    ) -> Self {
         let nulls = (1.0 - ratio) / ratio;
         let tracked = if matches!(connection, Connection::Ratio(_)) { 1.0 / ratio } else { 0.0 };
         let flight = |d: f64| exponential(d, nulls * d);
@@ -78,7 +83,7 @@ impl<'a> Walks<'a> {
                 let [on, round] = TURNS.map(|turn| scene.albedo * scene.phase(turn));
                 let [same, other] = [is_forward, !is_forward].map(|way| &last[usize::from(way)]);
                 let pairs = same.iter().zip(other);
-                let scattered: Field = pairs.map(|(&a, &b)| a * on + b * round).collect();
+                let scattered: NodeSeries = pairs.map(|(&a, &b)| a * on + b * round).collect();
                 looked_up(&flights.over(is_forward, &scattered))
             });
             arriving.push(next);
@@ -128,7 +133,7 @@ impl<'a> Walks<'a> {
     }
 
     /// Positions of walks after `count` scatterings, from the far end of the rod if `is_mirrored`.
-    fn places(&self, count: usize, is_mirrored: bool) -> Field {
+    fn places(&self, count: usize, is_mirrored: bool) -> NodeSeries {
         let [back, on] = &self.arriving[count - 1];
         let mut places = sum(back, on);
         if is_mirrored {

@@ -36,7 +36,7 @@ mod predict;
 
 use std::ops::RangeInclusive;
 
-use self::grid::Grid;
+use self::grid::NodeGrid;
 use crate::light::Heuristic;
 use crate::prediction::raw::{HIGHEST, Powers};
 use numeric::{Known, Lane};
@@ -45,7 +45,7 @@ pub use predict::predict;
 
 /// A rod, with the orders of its paths.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub struct RodScene {
     /// τ.
     pub depth: Known,
     /// a.
@@ -58,7 +58,7 @@ pub struct Scene {
     pub orders: RangeInclusive<usize>,
 }
 
-impl Scene {
+impl RodScene {
     /// ρ of a scattering that goes straight on or turns.
     pub fn phase(&self, turns: bool) -> f64 {
         if turns { 1.0 - self.forward } else { self.forward }
@@ -177,7 +177,7 @@ impl Combination {
 
 /// Rules by which a draw is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rules {
+pub struct DrawRules {
     /// Techniques and their weights.
     pub combination: Combination,
     /// Estimate of the transmittance of connections.
@@ -196,9 +196,9 @@ const NOTHING: Powers = {
 };
 
 /// `E[X_s^k]` of every technique that is drawn, order by order.
-fn powers(scene: &Scene, rules: &Rules, [size, step]: [f64; 2]) -> Vec<Powers> {
+fn powers(scene: &RodScene, rules: &DrawRules, [size, step]: [f64; 2]) -> Vec<Powers> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
-    let grid = Grid::new(scene.depth.value, size as usize);
+    let grid = NodeGrid::new(scene.depth.value, size as usize);
     let none = |order: usize| vec![NOTHING; order + 3];
     let mut by_order: Vec<Vec<Powers>> = scene.orders.clone().map(none).collect();
     match rules.combination {

@@ -6,12 +6,12 @@
 //! E[X_s^k] = Σ_directions w_s^k ∫ f c_s^{k−1},   c_s = f/p_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r}
 //! ```
 
-use super::grid::{Grid, Operator};
-use super::{Rules, Scene, quotient};
+use super::grid::{NodeGrid, Operator};
+use super::{DrawRules, RodScene, quotient};
 use crate::prediction::raw::{HIGHEST, Powers};
 
 /// Adds `E[X_s^k]`, k = 1 … 8, of the techniques s = 0 … r + 2 of each order.
-pub fn add(scene: &Scene, rules: &Rules, grid: &Grid, sums: &mut [Vec<Powers>]) {
+pub fn add(scene: &RodScene, rules: &DrawRules, grid: &NodeGrid, sums: &mut [Vec<Powers>]) {
     let segment = |depth: f64, _| -> Powers {
         std::array::from_fn(|k| rules.connection.power(depth, k.max(1)))
     };
@@ -32,8 +32,8 @@ pub fn add(scene: &Scene, rules: &Rules, grid: &Grid, sums: &mut [Vec<Powers>]) 
 
 /// The segments of all paths.
 pub struct Chain<'a> {
-    scene: &'a Scene,
-    grid: &'a Grid,
+    scene: &'a RodScene,
+    grid: &'a NodeGrid,
     /// Number of kernels of a segment.
     count: usize,
     /// Each kernel over the whole rod.
@@ -47,7 +47,7 @@ pub struct Chain<'a> {
 }
 
 /// A path with given turns at its scatterings.
-pub struct Path {
+pub struct TurnPath {
     /// 1 for each scattering that turns the path round, else 0.
     turns: Vec<usize>,
     /// ρ at each scattering.
@@ -64,8 +64,8 @@ impl<'a> Chain<'a> {
     /// Segments with kernels that depend on the optical depth and on the product of `a ρ` at both ends. The first kernel
     /// is that without a connection, the k-th that of the k-th moment of one; the last stands for all further moments.
     pub fn new<const N: usize>(
-        scene: &'a Scene,
-        grid: &'a Grid,
+        scene: &'a RodScene,
+        grid: &'a NodeGrid,
         segment: &dyn Fn(f64, f64) -> [f64; N],
     ) -> Self {
         let scattered = [false, true].map(|turns| scene.albedo * scene.phase(turns));
@@ -89,7 +89,7 @@ impl<'a> Chain<'a> {
 
     /// Adds the moments of all techniques, order by order: each path, or its connection on one segment, times a factor
     /// for each power.
-    pub fn add(&self, sums: &mut [Vec<Powers>], factors: impl Fn(&Path, usize) -> Powers) {
+    pub fn add(&self, sums: &mut [Vec<Powers>], factors: impl Fn(&TurnPath, usize) -> Powers) {
         for (order, sums) in self.scene.orders.clone().zip(sums) {
             for path in (0..1 << order).filter_map(|bits| self.path(order, bits)) {
                 let whole = [self.connected(&path, 0, 0)];
@@ -110,7 +110,7 @@ impl<'a> Chain<'a> {
 
     /// The path with turns at the scatterings of which the bits are 1; `None` where a turn is impossible, or the path
     /// does not reach the sensor.
-    fn path(&self, order: usize, bits: usize) -> Option<Path> {
+    fn path(&self, order: usize, bits: usize) -> Option<TurnPath> {
         let turns: Vec<usize> = (0..order).map(|i| bits >> i & 1).collect();
         let phase: Vec<f64> = turns.iter().map(|&turn| self.scene.phase(turn == 1)).collect();
         let mut is_forward = vec![true];
@@ -122,7 +122,7 @@ impl<'a> Chain<'a> {
         }
         let nothing = vec![Vec::new(); order];
         let (arriving, leaving) = (nothing.clone(), nothing);
-        let mut path = Path { turns, phase, is_forward, arriving, leaving };
+        let mut path = TurnPath { turns, phase, is_forward, arriving, leaving };
         for i in 0..order {
             path.arriving[i] = match i.checked_sub(1) {
                 None => self.light[path.turns[0]][0].clone(),
@@ -139,17 +139,17 @@ impl<'a> Chain<'a> {
     }
 
     /// `a ρ` of a scattering times a function.
-    fn scattered(&self, path: &Path, i: usize, f: &[f64]) -> Vec<f64> {
+    fn scattered(&self, path: &TurnPath, i: usize, f: &[f64]) -> Vec<f64> {
         f.iter().map(|x| self.scene.albedo * path.phase[i] * x).collect()
     }
 
     /// Flights on the segment before a scattering.
-    fn flight(&self, path: &Path, i: usize, kernel: usize) -> &Operator {
+    fn flight(&self, path: &TurnPath, i: usize, kernel: usize) -> &Operator {
         &self.flights[path.turns[i - 1] + path.turns[i]][kernel]
     }
 
     /// Light that reaches the sensor behind a scattering, with a kernel on the segment that follows.
-    fn onward(&self, path: &Path, i: usize, kernel: usize) -> Vec<f64> {
+    fn onward(&self, path: &TurnPath, i: usize, kernel: usize) -> Vec<f64> {
         let next = i + 1;
         if next == path.turns.len() {
             return self.sensor[path.turns[i]][kernel].clone();
@@ -158,7 +158,7 @@ impl<'a> Chain<'a> {
     }
 
     /// `∫` of the path with a kernel on segment j.
-    fn connected(&self, path: &Path, j: usize, kernel: usize) -> f64 {
+    fn connected(&self, path: &TurnPath, j: usize, kernel: usize) -> f64 {
         match j.checked_sub(1) {
             _ if path.turns.is_empty() => self.through[kernel],
             None => self.grid.product(&self.light[path.turns[0]][kernel], &path.leaving[0]),

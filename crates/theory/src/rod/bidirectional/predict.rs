@@ -1,8 +1,8 @@
 //! Prediction for a draw: of each technique, and of their sum.
 
-use super::grid::Grid;
+use super::grid::NodeGrid;
 use super::lookups::{Walks, of_technique};
-use super::{Combination, Connection, NOTHING, Rules, Scene, powers};
+use super::{Combination, Connection, DrawRules, NOTHING, RodScene, powers};
 use crate::prediction::raw::{Powers, Raw, RawMoments, added};
 use crate::prediction::{Covariance, UNRESOLVED};
 use crate::{Channel, CountDistribution, Moments, Prediction, Tails};
@@ -20,8 +20,8 @@ fn resolutions(depth: f64) -> [[f64; 2]; 2] {
 /// Prediction for a draw. The number of lookups is known where `σ_t/σ̂` has one value, `ratio`. Without `with_distributions`, as
 /// for lines in plots, only values are valid, and no error is computed.
 pub fn predict(
-    scene: &Scene,
-    rules: &Rules,
+    scene: &RodScene,
+    rules: &DrawRules,
     ratio: Option<f64>,
     with_distributions: bool,
 ) -> Prediction {
@@ -80,7 +80,7 @@ pub fn predict(
 }
 
 /// Order, light vertices and name of each technique that is drawn.
-fn names(scene: &Scene, rules: &Rules) -> Vec<(usize, usize, String)> {
+fn names(scene: &RodScene, rules: &DrawRules) -> Vec<(usize, usize, String)> {
     let orders = scene.orders.clone();
     let is_single = orders.start() == orders.end();
     let is_combined = !matches!(rules.combination, Combination::Technique(_));
@@ -133,10 +133,10 @@ fn channel(depth: Known, order: usize, [fine, rough]: [&Powers; 2], is_certain: 
 }
 
 /// Distribution of the lookups of all techniques together.
-fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountDistribution {
+fn lookups(scene: &RodScene, rules: &DrawRules, ratio: f64) -> CountDistribution {
     let of = |[nodes, _]: [f64; 2]| -> Raw {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
-        let grid = Grid::new(scene.depth.value, nodes as usize);
+        let grid = NodeGrid::new(scene.depth.value, nodes as usize);
         let walks = Walks::new(scene, rules.connection, ratio, &grid);
         let paths = scene
             .orders

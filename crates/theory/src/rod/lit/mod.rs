@@ -12,7 +12,7 @@ pub mod moments;
 pub mod spectral;
 
 use super::truth;
-use super::walk::Walk;
+use super::walk::RodWalk;
 use crate::light::Techniques;
 use crate::prediction::raw::{HIGHEST, POWERS, RESOLVED, RawMoments};
 use crate::problems::{LitRod, Rod};
@@ -27,8 +27,8 @@ pub(crate) const ROUNDING: f64 = 1e-14;
 const OF_WEIGHTS: [f64; 5] = [1e-14, 1e-13, 5e-13, 3e-12, 4e-12];
 
 /// The delta-tracking walk on a rod.
-pub(super) fn walk<'a>(mesh: &Mesh, rod: &'a Rod, sampling: &'a Piecewise) -> Walk<'a> {
-    Walk::new(mesh, rod, Some(sampling), ParticleRule::Analog).with_orders()
+pub(super) fn walk<'a>(mesh: &Mesh, rod: &'a Rod, sampling: &'a Piecewise) -> RodWalk<'a> {
+    RodWalk::new(mesh, rod, Some(sampling), ParticleRule::Analog).with_orders()
 }
 
 /// Returns whether theory can cut a rod into panels.

@@ -28,7 +28,7 @@ use crate::light::{Shadow, Techniques};
 use crate::prediction::raw::binomial;
 use crate::rod::line::{Importance, Line};
 use crate::rod::moments::lookups_with;
-use crate::rod::walk::Node;
+use crate::rod::walk::RodPoint;
 
 /// `U_k⁺(0)`, k = 1 … highest.
 pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<Vec<f64>> {
@@ -37,7 +37,7 @@ pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<
     let mut futures: Vec<Importance> = Vec::new();
     let mut found = Vec::new();
     for k in 1..=highest {
-        let source = |i: usize, node: &Node| {
+        let source = |i: usize, node: &RodPoint| {
             let of = |vertex: &Vertex| {
                 let mut sum = vertex.towards * vertex.hit[k];
                 for j in 1..=k {
@@ -79,7 +79,7 @@ fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
         Some(Shadow::Delta) => {
             let mut before: Option<Importance> = None;
             for k in 1..=4_u8 {
-                let source = |i: usize, node: &Node| {
+                let source = |i: usize, node: &RodPoint| {
                     let rate = f64::from(k) * node.sampling;
                     // The first collision counts, real or null.
                     let after = |last: &Importance| node.means[0] * last.at(i)[0];
@@ -100,6 +100,6 @@ fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
 pub fn lookups(line: &Line, techniques: Techniques) -> Option<[f64; 5]> {
     let of_shadow = shadow_lookups(line, techniques.shadow)?;
     let [one, two, three, four] = lookups_with(line, &|node| of_shadow[node])?;
-    let source = |i: usize, node: &Node| [node.scattering() * of_shadow[i][1]; 2];
+    let source = |i: usize, node: &RodPoint| [node.scattering() * of_shadow[i][1]; 2];
     Some([one, two, three, four, line.flow(0)?.solve(&source, [0.0; 2]).entering])
 }

@@ -24,9 +24,9 @@ use crate::prediction::Covariance;
 use crate::prediction::raw::{Raw, RawMoments, added, poisson};
 use crate::problems::SingleScattering;
 use crate::single::predict::{LOOKUPS, MOMENT};
-use crate::single::scene::Place;
+use crate::single::scene::StretchedPlace;
 use crate::single::segment::along_all;
-use crate::single::{Camera, CameraTracking, Scene, TechniqueMoments, Tracking};
+use crate::single::{Camera, CameraTracking, RayScene, TechniqueMoments, Tracking};
 use crate::{Mesh, Prediction};
 use media::{Control, Medium, Piecewise};
 use numeric::quadrature::GaussLegendre;
@@ -161,7 +161,7 @@ impl<'a> Relative<'a> {
 
     /// Contributions of a point of the ray to each moment and, where all channels walk together, to those of
     /// lookups.
-    fn row(&self, Place { s, along, .. }: Place) -> [f64; ROWS] {
+    fn row(&self, StretchedPlace { s, along, .. }: StretchedPlace) -> [f64; ROWS] {
         let from = self.meshes[0].support().from;
         let here = &self.extinctions(&[s])[0];
         let up_to = self.up_to(s);
@@ -203,7 +203,7 @@ impl<'a> Relative<'a> {
     pub fn predict(&self, alone: &[TechniqueMoments], of_heroes: Option<Raw>) -> Prediction {
         let none = Control::None;
         let camera = Camera::new(self.meshes[0], self.sampling, &none, CameraTracking::Exact);
-        let scene = Scene::new(&self.channels[0], camera, Tracking::Exact);
+        let scene = RayScene::new(&self.channels[0], camera, Tracking::Exact);
         let mut parts = [f64::INFINITY; ROWS];
         let last = self.powers.len() - 1;
         parts[..last].fill(MOMENT);

@@ -4,17 +4,17 @@
 //! a [`Resolution`] requires for the lowest direction and before a disc.
 
 use crate::Mesh;
-use crate::problems::lit_slab::Light;
+use crate::problems::lit_slab::LightBehind;
 use crate::problems::{LitSlab, Problem};
 use crate::ray::mesh::Panel;
 use media::Piecewise;
 
-use super::directions::Resolution;
+use super::directions::LitResolution;
 use crate::light::contour::Contour;
 
 /// A depth.
 #[derive(Debug, Clone)]
-pub struct Node {
+pub struct DepthNode {
     /// Distance to the end of the slab.
     pub before: f64,
     /// dz.
@@ -32,24 +32,24 @@ pub struct Node {
 }
 
 /// The slab.
-pub struct Column {
+pub struct LitColumn {
     mesh: Mesh,
     /// The depths, panel by panel.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<DepthNode>,
     /// Nodes in a panel.
     pub per_panel: usize,
     /// τ of the slab, and ∫σ̂ − τ.
     pub whole: [f64; 2],
 }
 
-impl Column {
+impl LitColumn {
     /// A column with the integrals of a contour.
     pub fn new(
         mesh: &Mesh,
         problem: &LitSlab,
         sampling: &Piecewise,
         contour: &Contour,
-        resolution: &Resolution,
+        resolution: &LitResolution,
     ) -> Self {
         let cut = mesh.refined(&cuts(mesh, problem, sampling, resolution), &|_, panel| {
             let left: Vec<f64> = nulls(panel, sampling).map(|[null, _]| null).collect();
@@ -65,7 +65,7 @@ impl Column {
             let (real, missing) =
                 (cut.running(panel, panel.extinction), cut.running(panel, &flown));
             for (i, &t) in panel.t.iter().enumerate() {
-                nodes.push(Node {
+                nodes.push(DepthNode {
                     before: end - t,
                     weight: panel.span.length() * cut.rule().weights[i],
                     extinction: panel.extinction[i],
@@ -87,7 +87,7 @@ impl Column {
     /// Integrates from each node to the end.
     fn integrate(&mut self, contour: &Contour) {
         let rates =
-            |node: &Node| contour.rates(null(node.extinction, node.sampling), node.sampling);
+            |node: &DepthNode| contour.rates(null(node.extinction, node.sampling), node.sampling);
         let rows: Vec<Vec<f64>> = self.nodes.iter().map(rates).collect();
         let lengths: Vec<f64> =
             (0..rows.len()).step_by(self.per_panel).map(|first| self.panel_length(first)).collect();
@@ -129,14 +129,19 @@ fn nulls<'a>(panel: Panel<'a>, sampling: &'a Piecewise) -> impl Iterator<Item = 
 }
 
 /// Depths where panels end.
-fn cuts(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise, resolution: &Resolution) -> Vec<f64> {
+fn cuts(
+    mesh: &Mesh,
+    problem: &LitSlab,
+    sampling: &Piecewise,
+    resolution: &LitResolution,
+) -> Vec<f64> {
     let mut cuts = sampling.knots().to_vec();
     let lowest = problem.light.lowest();
     for panel in mesh.panels() {
         let depth = mesh.integral(panel, panel.extinction) / lowest;
         cuts.extend(panel.span.even_cuts((depth / resolution.depth).ceil().max(1.0)));
     }
-    if let Light::Disc { distance, .. } | Light::Point(distance) = problem.light {
+    if let LightBehind::Disc { distance, .. } | LightBehind::Point(distance) = problem.light {
         let (end, length) = (problem.end(), problem.medium().span().length());
         let places = resolution.away(distance, length);
         cuts.extend(places.into_iter().map(|before| end - before));

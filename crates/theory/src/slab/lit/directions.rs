@@ -10,7 +10,7 @@
 //! that peaks there; at grazing directions of a cap; at the disc itself.
 
 use crate::problems::LitSlab;
-use crate::problems::lit_slab::Light;
+use crate::problems::lit_slab::LightBehind;
 use media::phase::Phase;
 use numeric::Span;
 use numeric::quadrature::GaussLegendre;
@@ -27,7 +27,7 @@ pub struct Direction {
 }
 
 /// Resolution of directions and depths.
-pub struct Resolution {
+pub struct LitResolution {
     rule: GaussLegendre,
     /// Factor by which panels grow away from a singularity.
     pub growth: f64,
@@ -35,7 +35,7 @@ pub struct Resolution {
     pub depth: f64,
 }
 
-impl Resolution {
+impl LitResolution {
     /// Resolution of answers.
     pub fn fine() -> Self {
         Self { rule: GaussLegendre::new(16), growth: 2.0, depth: 1.0 }
@@ -66,17 +66,17 @@ impl Resolution {
         }
         let peak = peak(&phase).map_or_else(Vec::new, |scale| self.away(scale, 1.0));
         let cuts = match light {
-            Light::Cap(lowest) => {
+            LightBehind::Cap(lowest) => {
                 let grazing = self.away(lowest, 1.0 - lowest).into_iter();
                 let beside = peak.into_iter().map(|off| 1.0 - off - lowest);
                 grazing.chain(beside).map(|above| above / (1.0 - lowest)).collect()
             }
-            Light::Disc { distance, radius } => {
+            LightBehind::Disc { distance, radius } => {
                 let scale = ((before + distance) / radius).powi(2);
                 let beside = peak.into_iter().map(|off| scale * ((1.0 - off).powi(-2) - 1.0));
                 self.away(scale, 1.0).into_iter().chain(beside).collect()
             }
-            Light::Distant(_) | Light::Point(_) => Vec::new(),
+            LightBehind::Distant(_) | LightBehind::Point(_) => Vec::new(),
         };
         let ends = Span::new(0.0, 1.0).cut(cuts);
         let nodes = Span::between(&ends).flat_map(|panel| self.rule.on(panel));

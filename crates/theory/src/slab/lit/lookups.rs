@@ -5,8 +5,8 @@
 //! collision makes the lookups of [`crate::ray::survival`] with `σ̂/μ`, `K = τ/μ` and `A = ν/μ`. A ratio-tracked shadow ray
 //! makes a Poisson number of mean ∫σ̂/μ. Directions that miss the light make none.
 
-use super::column::Column;
-use super::directions::{Direction, Resolution};
+use super::column::LitColumn;
+use super::directions::{Direction, LitResolution};
 use crate::light::{Shadow, Techniques};
 use crate::prediction::raw::{Raw, added, of_factorial, poisson};
 use crate::problems::LitSlab;
@@ -17,10 +17,10 @@ const FAR: f64 = 60.0;
 
 /// `E[M^k]`, k = 0 … 4, and the mean number of lookups of shadow rays.
 pub fn raw(
-    column: &Column,
+    column: &LitColumn,
     problem: &LitSlab,
     techniques: Techniques,
-    resolution: &Resolution,
+    resolution: &LitResolution,
 ) -> (Raw, f64) {
     let [depth, nulls] = column.whole;
     let mut found = poisson(nulls).map(|moment| (-depth).exp() * moment);
@@ -67,7 +67,7 @@ fn add(sum: &mut Raw, weight: f64, moments: Raw) {
 }
 
 /// `E[K^k]` of a flight from a node to the end that stops at a real collision.
-fn stopping(column: &Column, from: usize, direction: &Direction) -> Raw {
+fn stopping(column: &LitColumn, from: usize, direction: &Direction) -> Raw {
     let (here, cosine) = (&column.nodes[from], direction.cosine);
     let first = from - from % column.per_panel;
     let own = column.rest_of_panel(from);

@@ -21,14 +21,14 @@ pub mod column;
 pub mod directions;
 mod lookups;
 
-use self::column::{Column, Node};
-use self::directions::{Direction, Resolution};
+use self::column::{DepthNode, LitColumn};
+use self::directions::{Direction, LitResolution};
 use crate::light::contour::ROUNDINGS;
 use crate::light::vertex::{Vertex, Weights};
 use crate::light::{Combination, Shadow, Techniques};
 use crate::prediction::raw::{HIGHEST, POWERS, Powers, RESOLVED, Raw, RawMoments, binomial};
 use crate::problems::LitSlab;
-use crate::problems::lit_slab::Light;
+use crate::problems::lit_slab::LightBehind;
 use crate::rod::lit::ROUNDING;
 use crate::{Channel, CountDistribution, Mesh, Prediction, Tails};
 use media::Piecewise;
@@ -38,7 +38,7 @@ use numeric::Known;
 const DEEPEST: f64 = 64.0;
 
 /// Techniques that can find a light: one without a size is found by shadow rays alone, of weight 1.
-pub fn possible(techniques: Techniques, light: Light) -> Techniques {
+pub fn possible(techniques: Techniques, light: LightBehind) -> Techniques {
     let combination =
         if light.can_be_hit() { techniques.combination } else { Combination::NextEvent };
     Techniques { combination, ..techniques }
@@ -67,8 +67,9 @@ pub fn predict(
     let truth = truth(mesh, problem, sampling);
     let techniques = possible(techniques, problem.light);
     let highest = if with_distributions { HIGHEST } else { 2 };
-    let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
-        .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, highest), &resolution));
+    let [fine, coarse] = [LitResolution::fine(), LitResolution::coarse()].map(|resolution| {
+        ResolutionScores::new(mesh, problem, sampling, (techniques, highest), &resolution)
+    });
     let raw = RawMoments(std::array::from_fn(|i| {
         let k = POWERS[i].unsigned_abs() as usize;
         if k > highest { Known::INFINITE } else { fine.known(&coarse, k) }
@@ -86,13 +87,14 @@ pub fn truth(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise) -> Known {
 
 /// `E[X]` of techniques, equal for all that are unbiased.
 pub fn mean(mesh: &Mesh, problem: &LitSlab, sampling: &Piecewise, techniques: Techniques) -> Known {
-    let [fine, coarse] = [Resolution::fine(), Resolution::coarse()]
-        .map(|resolution| Scores::new(mesh, problem, sampling, (techniques, 1), &resolution));
+    let [fine, coarse] = [LitResolution::fine(), LitResolution::coarse()].map(|resolution| {
+        ResolutionScores::new(mesh, problem, sampling, (techniques, 1), &resolution)
+    });
     fine.known(&coarse, 1)
 }
 
 /// Numbers at one resolution.
-struct Scores {
+struct ResolutionScores {
     /// `E[X^k]`.
     powers: Powers,
     /// Bounds on the errors of `E[X^k]` from weights.
@@ -105,16 +107,16 @@ struct Scores {
     error: f64,
 }
 
-impl Scores {
+impl ResolutionScores {
     fn new(
         mesh: &Mesh,
         problem: &LitSlab,
         sampling: &Piecewise,
         (techniques, highest): (Techniques, usize),
-        resolution: &Resolution,
+        resolution: &LitResolution,
     ) -> Self {
         let weights = Weights::new(techniques, highest, true);
-        let column = Column::new(mesh, problem, sampling, &weights.contour, resolution);
+        let column = LitColumn::new(mesh, problem, sampling, &weights.contour, resolution);
         let error = column.error(problem.light.lowest());
         let off = ROUNDINGS * f64::EPSILON + error;
         let (lookups, shadow_lookups) = lookups::raw(&column, problem, techniques, resolution);
@@ -140,7 +142,7 @@ impl Scores {
     /// Adds the contribution of scattering at a depth.
     fn add(
         &mut self,
-        node: &Node,
+        node: &DepthNode,
         directions: &[Direction],
         albedo: f64,
         (highest, scattered): (usize, &dyn Fn(&Direction) -> Vertex),

@@ -4,7 +4,7 @@
 //! ∫ σ_t(t) S(t) e^{−τ(0, t)} dt,   S the polynomials of the shells that the ray crosses
 //! ```
 
-use super::shells::{Centre, Row, Rules, Shell, Shells, whole};
+use super::shells::{Centre, FunctionalRow, GaussRules, Shell, Shells, whole};
 use numeric::quadrature::GaussLegendre;
 
 /// Maximum optical depth over which one Gauss rule resolves the exponential.
@@ -60,9 +60,9 @@ impl Ball<'_> {
         &self,
         chord: &Chord,
         shells: &Shells,
-        rules: &Rules,
+        rules: &GaussRules,
         weight: f64,
-        row: &mut Row,
+        row: &mut FunctionalRow,
     ) -> f64 {
         let mut depth = 0.0;
         crossings(chord, shells, |shell, from, to| {

@@ -30,8 +30,8 @@ use numeric::Known;
 use numeric::matrix::Matrix;
 
 use ball::Ball;
-use shells::{Centre, Resolution, Row, Rules, Shells};
-use spread::Vertex;
+use shells::{BallResolution, Centre, FunctionalRow, GaussRules, Shells};
+use spread::VertexBound;
 
 pub use spread::{Spread, Spreads, Techniques};
 
@@ -59,12 +59,12 @@ pub enum Observable {
 }
 
 /// A ball in which the equation of one albedo and one light is solved.
-pub struct Solved<'a> {
+pub struct SolvedBall<'a> {
     ball: &'a Ball<'a>,
     lights: Lights,
-    resolution: Resolution,
+    resolution: BallResolution,
     shells: Shells,
-    rules: Rules,
+    rules: GaussRules,
     albedo: f64,
     /// `r²` of the nodes.
     nodes: Vec<f64>,
@@ -83,16 +83,16 @@ fn product(weights: &[f64], values: &[f64]) -> f64 {
     weights.iter().zip(values).map(|(w, x)| w * x).sum()
 }
 
-impl<'a> Solved<'a> {
+impl<'a> SolvedBall<'a> {
     /// Solves the equation; `None` where the medium is invalid: σ_t or a negative, or a above 1.
     pub fn new(
         ball: &'a Ball<'a>,
         albedo: f64,
         lights: Lights,
-        resolution: Resolution,
+        resolution: BallResolution,
     ) -> Option<Self> {
         let shells = Shells::new(ball.radius, ball.centre, ball.extinction, resolution);
-        let rules = Rules::new(resolution.nodes + 8);
+        let rules = GaussRules::new(resolution.nodes + 8);
         let nodes = shells.nodes(&rules);
         let (direct, source) = (Vec::new(), Vec::new());
         let matrix = Matrix::new(1, 1, |_, _| 0.0);
@@ -114,14 +114,14 @@ impl<'a> Solved<'a> {
     }
 
     /// Adds the light along one line of sight to a row; returns the unscattered part.
-    fn view(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
+    fn view(&self, offset2: f64, from: f64, weight: f64, row: &mut FunctionalRow) -> f64 {
         let chord = self.ball.chord(offset2, from);
         let left = self.ball.collect(&chord, &self.shells, &self.rules, weight, row);
         weight * left * if chord.hits { self.lights.core } else { self.lights.environment }
     }
 
     fn mean_row(&self, r: f64) -> Arriving {
-        let mut row = Row::new(self.shells.count);
+        let mut row = FunctionalRow::new(self.shells.count);
         let ball = self.ball;
         let views = views::from_point(r, ball.radius, ball.centre, self.resolution, &self.rules);
         let direct: f64 = views
@@ -135,7 +135,7 @@ impl<'a> Solved<'a> {
         match observable {
             Observable::Mean(r) => self.mean_row(r),
             Observable::Radiance { offset, from } => {
-                let mut row = Row::new(self.shells.count);
+                let mut row = FunctionalRow::new(self.shells.count);
                 let direct = self.view(offset * offset, from, 1.0, &mut row);
                 (direct, row.weights(&self.shells, &self.rules))
             }
@@ -157,7 +157,7 @@ impl<'a> Solved<'a> {
         let largest = if matches!(self.ball.centre, Centre::Black(_)) { 0.5 } else { 1.0 };
         let scores = |r2: f64, direct: f64, all: f64| -> Vec<f64> {
             let all = all.max(direct);
-            let at = Vertex { share: share(r2), largest, direct, all };
+            let at = VertexBound { share: share(r2), largest, direct, all };
             let each = Techniques::ALL.into_iter();
             if is_distant {
                 // Seen from one place it is visible or not; on average as often as a uniform environment.
@@ -199,9 +199,9 @@ fn solved<'a>(
     ball: &'a Ball<'a>,
     albedo: f64,
     lights: Lights,
-    resolution: Resolution,
-) -> Option<[Solved<'a>; 3]> {
-    let solve = |resolution| Solved::new(ball, albedo, lights, resolution);
+    resolution: BallResolution,
+) -> Option<[SolvedBall<'a>; 3]> {
+    let solve = |resolution| SolvedBall::new(ball, albedo, lights, resolution);
     let [fine, coarse, coarsest] = resolution.all().map(solve);
     Some([fine?, coarse?, coarsest?])
 }
@@ -211,7 +211,7 @@ pub fn answers(
     ball: &Ball,
     albedo: f64,
     lights: Lights,
-    resolution: Resolution,
+    resolution: BallResolution,
     observable: &[Observable],
 ) -> Option<Vec<Known>> {
     let resolution = resolution.about(ball.centre, ball.radius);
@@ -232,7 +232,7 @@ mod tests {
     fn the_square_of_what_a_thin_ball_scatters_is_a_hand_value() {
         // One scattering at most, h = 1 almost surely: X = 1 unscattered or scattered, never both.
         let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &|_| 1e-6 };
-        let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
+        let solved = SolvedBall::new(&ball, 1.0, SKY, BallResolution::COARSE).expect("a medium");
         let through = Observable::Radiance { offset: 0.0, from: f64::NEG_INFINITY };
         let spreads = solved.spreads(through, false).expect("finite");
         let spread = spreads.of(Techniques::NextEvent);

@@ -6,11 +6,11 @@
 //! ```
 
 use super::ball::Ball;
-use super::shells::{Centre, Resolution};
-use super::{Lights, Observable, Solved, Spread, Spreads, Techniques, solved};
+use super::shells::{BallResolution, Centre};
+use super::{Lights, Observable, SolvedBall, Spread, Spreads, Techniques, solved};
 use crate::memo::Memo;
 use crate::problems::Sphere;
-use crate::problems::ball::{Light, Sought};
+use crate::problems::ball::{BallLight, Sought};
 use crate::single::Tracking;
 use crate::space::energy_channel;
 use crate::{Channel, Distribution, Moments, Prediction, Tails};
@@ -23,23 +23,23 @@ pub const DEEPEST: f64 = 30.0;
 
 /// Solution for one observable.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
+pub struct BallSolution {
     /// The value.
     pub value: Known,
     /// Bounds on the second moments of draws, the errors of the solution included.
     pub spreads: Spreads,
 }
 
-impl Answer {
+impl BallSolution {
     /// Solution under the light of a black sphere, or of the environment in a ball without one. A distant light is looked
     /// at from the centre, where the environment stands for it.
     fn new(ball: &Ball, albedo: f64, observable: Observable, is_distant: bool) -> Option<Self> {
         let is_black = matches!(ball.centre, Centre::Black(_));
         let [environment, core] = if is_black { [0.0, 1.0] } else { [1.0, 0.0] };
-        let resolution = Resolution::COARSE.about(ball.centre, ball.radius);
+        let resolution = BallResolution::COARSE.about(ball.centre, ball.radius);
         let solved = solved(ball, albedo, Lights { environment, core }, resolution)?;
         let value = resolution.known(solved.each_ref().map(|s| s.answer(observable)));
-        let of = |solved: &Solved| solved.spreads(observable, is_distant);
+        let of = |solved: &SolvedBall| solved.spreads(observable, is_distant);
         let [fine, coarse, coarsest] = solved.each_ref().map(of);
         let above = |numbers| {
             let Known { value, error, .. } = resolution.known(numbers);
@@ -50,29 +50,29 @@ impl Answer {
 }
 
 /// The exact answer; `None` where the equation is not solved, or the error of the answer is too large.
-pub fn truth(sphere: &Sphere) -> Option<Answer> {
+pub fn truth(sphere: &Sphere) -> Option<BallSolution> {
     answer(sphere).filter(|answer| blur(answer) <= BLURRED)
 }
 
 /// The relative error of an answer.
-pub fn blur(answer: &Answer) -> f64 {
+pub fn blur(answer: &BallSolution) -> f64 {
     answer.value.error / answer.value.value.abs()
 }
 
 /// Answers by the bits of all numbers of a ball, and of σ_t at 33 places, enough to distinguish fields.
-static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
+static ANSWERS: Memo<Vec<u64>, Option<BallSolution>> = Memo::new(1024);
 
 /// The answer with its error; `None` where the equation is not solved. Experiments of one ball share it.
-pub fn answer(sphere: &Sphere) -> Option<Answer> {
+pub fn answer(sphere: &Sphere) -> Option<BallSolution> {
     if sphere.majorant() * sphere.radius > DEEPEST {
         return None;
     }
     let (radius, albedo) = (sphere.radius, sphere.scene.albedo.even()?);
     let (centre, core) = match sphere.light {
-        Light::BlackSphere(core) => (Centre::Black(core), core),
-        Light::Environment | Light::Distant(_) => (Centre::Medium, -1.0),
+        BallLight::BlackSphere(core) => (Centre::Black(core), core),
+        BallLight::Environment | BallLight::Distant(_) => (Centre::Medium, -1.0),
     };
-    let is_distant = matches!(sphere.light, Light::Distant(_));
+    let is_distant = matches!(sphere.light, BallLight::Distant(_));
     let (observable, asked) = match sphere.sought {
         Sought::Radiance => {
             let (offset, from) = (sphere.offset(), sphere.begins());
@@ -89,7 +89,7 @@ pub fn answer(sphere: &Sphere) -> Option<Answer> {
     let numbers = settings.into_iter().chain(asked).chain(places);
     ANSWERS.get(numbers.map(f64::to_bits).collect(), || {
         let ball = Ball { radius, centre, extinction: &extinction };
-        Answer::new(&ball, albedo, observable, is_distant)
+        BallSolution::new(&ball, albedo, observable, is_distant)
     })
 }
 
@@ -104,7 +104,7 @@ pub fn gain(sphere: &Sphere, shadow: Tracking) -> f64 {
 }
 
 /// The answer of a refused setup, which is not predicted.
-const UNKNOWN: Answer = Answer {
+const UNKNOWN: BallSolution = BallSolution {
     value: Known::estimated(f64::NAN, f64::INFINITY),
     spreads: Spreads(
         [Spread { unscattered: f64::NAN, lit: f64::NAN, rest: f64::NAN }; Techniques::ALL.len()],
@@ -144,7 +144,7 @@ pub fn by_pilots(sphere: &Sphere) -> Prediction {
 /// Prediction for a walk that hits the light. Its draws are 0 or 1 where it has no weight. Where nothing is absorbed and
 /// light is everywhere, every draw is 1.
 pub fn hits(sphere: &Sphere, is_chance: bool) -> Prediction {
-    if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
+    if sphere.light == BallLight::Environment && sphere.scene.albedo.even() == Some(1.0) {
         return Prediction::uncounted(energy_channel(0.0, 0.0));
     }
     let value = truth(sphere).unwrap_or(UNKNOWN).value;

@@ -24,7 +24,7 @@ pub struct Shell {
 
 /// Resolution of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Resolution {
+pub struct BallResolution {
     /// Nodes of a shell that is not near a place of grading.
     pub nodes: usize,
     /// Nodes between two directions at which the radiance changes its character.
@@ -37,7 +37,7 @@ pub struct Resolution {
     pub chance: f64,
 }
 
-impl Resolution {
+impl BallResolution {
     /// Resolution of reference values: about twelve digits.
     pub const FINE: Self = Self { nodes: 12, directions: 12, surface: 15, core: 23, chance: 2e-13 };
     /// Resolution for comparison with draws: about seven digits.
@@ -124,7 +124,7 @@ impl Shells {
         radius: f64,
         centre: Centre,
         extinction: &dyn Fn(f64) -> f64,
-        resolution: Resolution,
+        resolution: BallResolution,
     ) -> Self {
         let outer = radius * radius;
         let (inner, halvings, drop) = match centre {
@@ -174,7 +174,7 @@ impl Shells {
     }
 
     /// The values of `r²` at all nodes.
-    pub fn nodes(&self, rules: &Rules) -> Vec<f64> {
+    pub fn nodes(&self, rules: &GaussRules) -> Vec<f64> {
         let at = |shell: &Shell| -> Vec<f64> {
             let nodes = &rules.of(shell.nodes).nodes;
             nodes.iter().map(|x| shell.from + (shell.to - shell.from) * x).collect()
@@ -185,9 +185,9 @@ impl Shells {
 
 /// Gauss–Legendre rules of every size that is needed.
 #[derive(Debug, Clone)]
-pub struct Rules(Vec<GaussLegendre>);
+pub struct GaussRules(Vec<GaussLegendre>);
 
-impl Rules {
+impl GaussRules {
     /// Rules of 1 to `most` nodes.
     pub fn new(most: usize) -> Self {
         Self((1..=most.max(1)).map(GaussLegendre::new).collect())
@@ -209,9 +209,9 @@ const SIDE: usize = 8;
 /// ℓⱼ(x) = wⱼ Σₘ (2m + 1) Pₘ(xⱼ) Pₘ(x),   x from −1 to 1, Σⱼ wⱼ = 1
 /// ```
 #[derive(Debug, Clone)]
-pub struct Row(Vec<f64>);
+pub struct FunctionalRow(Vec<f64>);
 
-impl Row {
+impl FunctionalRow {
     /// The functional 0 on `count` nodes.
     pub fn new(count: usize) -> Self {
         Self(vec![0.0; count])
@@ -241,7 +241,7 @@ impl Row {
     }
 
     /// The weights of the values at the nodes.
-    pub fn weights(&self, shells: &Shells, rules: &Rules) -> Vec<f64> {
+    pub fn weights(&self, shells: &Shells, rules: &GaussRules) -> Vec<f64> {
         let mut weights = Vec::with_capacity(self.0.len());
         for shell in &shells.shells {
             let moments = &self.0[shell.first..][..shell.nodes];

@@ -53,8 +53,8 @@ impl Techniques {
     ];
 
     /// Contribution of a vertex to `E[X²]`: the part of tracked shadow rays, to be multiplied by G, and the rest.
-    pub(super) fn scores(self, at: &Vertex) -> [f64; 2] {
-        let &Vertex { share, direct, all, .. } = at;
+    pub(super) fn scores(self, at: &VertexBound) -> [f64; 2] {
+        let &VertexBound { share, direct, all, .. } = at;
         let later = |n: f64| 2.0 * n * (all - n).max(0.0);
         match self {
             Self::NextEvent => [share * direct, later(direct)],
@@ -75,7 +75,7 @@ impl Techniques {
 
 /// Quantities of a vertex.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
+pub(super) struct VertexBound {
     /// q, the solid angle of the light as a fraction of 4π.
     pub share: f64,
     /// The largest q anywhere.
@@ -96,8 +96,8 @@ fn most(heuristic: Heuristic, share: f64) -> f64 {
 }
 
 /// `m(q) h̄ + m(largest) c + 2 n (J − n) + 2 c (J − n − c)` where it is largest, a concave function on a rectangle.
-fn connected(heuristic: Heuristic, at: &Vertex) -> f64 {
-    let &Vertex { share, largest, direct, all } = at;
+fn connected(heuristic: Heuristic, at: &VertexBound) -> f64 {
+    let &VertexBound { share, largest, direct, all } = at;
     // Without a connection a shadow ray may score more.
     let of_shadow = share / (1.0 + heuristic.raised(share));
     let of_connection = most(heuristic, largest);
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn a_thin_medium_under_an_even_sky_is_a_hand_value() {
         // All light arrives unscattered: h̄ = J = 1 and q = 1, half by hits and half by shadow rays.
-        let at = Vertex { share: 1.0, largest: 1.0, direct: 1.0, all: 1.0 };
+        let at = VertexBound { share: 1.0, largest: 1.0, direct: 1.0, all: 1.0 };
         let square = |techniques: Techniques| techniques.scores(&at).iter().sum::<f64>();
         assert!((square(Techniques::NextEvent) - 1.0).abs() < 1e-15);
         for heuristic in [Balance, Power] {
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn the_worst_split_is_found() {
-        let at = Vertex { share: 0.4, largest: 0.5, direct: 0.3, all: 0.9 };
+        let at = VertexBound { share: 0.4, largest: 0.5, direct: 0.3, all: 0.9 };
         for heuristic in [Balance, Power] {
             let found = connected(heuristic, &at);
             let (shadow, connection) = (0.4 / (1.0 + heuristic.raised(0.4)), most(heuristic, 0.5));

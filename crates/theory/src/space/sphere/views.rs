@@ -5,12 +5,12 @@
 //! graded towards these. Rays that end on a black sphere are parametrised by `q = √(ρ² − p²)`,
 //! in which their lengths are smooth, and rays that pass the centre by p.
 
-use super::shells::{Centre, Resolution, Rules, halved};
+use super::shells::{BallResolution, Centre, GaussRules, halved};
 use numeric::Span;
 
 /// A line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct LineOfSight {
     /// The square of its distance from the centre, p².
     pub offset2: f64,
     /// Begin, from its foot: `rν`.
@@ -36,21 +36,24 @@ pub fn from_point(
     r: f64,
     radius: f64,
     centre: Centre,
-    resolution: Resolution,
-    rules: &Rules,
-) -> Vec<View> {
+    resolution: BallResolution,
+    rules: &GaussRules,
+) -> Vec<LineOfSight> {
     if r <= 0.0 {
-        return vec![View { offset2: 0.0, from: 0.0, weight: 1.0 }];
+        return vec![LineOfSight { offset2: 0.0, from: 0.0, weight: 1.0 }];
     }
     let mut views = Vec::new();
     let rule = rules.of(resolution.directions);
-    let mut on = |edges: &[f64], view: &dyn Fn(f64, f64) -> View| {
+    let mut on = |edges: &[f64], view: &dyn Fn(f64, f64) -> LineOfSight| {
         let nodes = Span::between(edges).flat_map(|span| rule.on(span));
         views.extend(nodes.map(|(at, weight)| view(at, weight)));
     };
     let r2 = r * r;
-    let of_t =
-        |t: f64, dt: f64| View { offset2: (r2 - t * t).max(0.0), from: t, weight: 0.5 * dt / r };
+    let of_t = |t: f64, dt: f64| LineOfSight {
+        offset2: (r2 - t * t).max(0.0),
+        from: t,
+        weight: 0.5 * dt / r,
+    };
     let along = ((radius - r) * (radius + r)).max(0.0).sqrt().max(1e-9 * radius);
     // No panel is wider than a quarter of the range of ν.
     let surface = along.min(0.5 * r);
@@ -66,12 +69,12 @@ pub fn from_point(
             let finest = half * halved(resolution.core / 2);
             let from_edge = |x: f64, dx: f64| {
                 let offset2 = core * core + x * (2.0 * gap - x);
-                View { offset2, from: -(gap - x), weight: 0.5 * dx / r }
+                LineOfSight { offset2, from: -(gap - x), weight: 0.5 * dx / r }
             };
             on(&doubling(finest, half), &from_edge);
             let onto = |q: f64, dq: f64| {
                 let from = (gap * gap + q * q).sqrt();
-                View {
+                LineOfSight {
                     offset2: core * core - q * q,
                     from: -from,
                     weight: 0.5 * q * dq / (r * from),

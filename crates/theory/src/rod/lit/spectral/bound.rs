@@ -29,7 +29,7 @@ use crate::problems::LitRod;
 use crate::rod::line::{Importance, Line};
 use crate::rod::lit::connections::connections;
 use crate::rod::lit::walk;
-use crate::rod::walk::Node;
+use crate::rod::walk::RodPoint;
 use media::Piecewise;
 use numeric::Known;
 
@@ -56,13 +56,14 @@ pub fn weighted_square(
 fn spread(line: &Line, techniques: Techniques) -> Option<f64> {
     let connections = connections(line, techniques, 2);
     let real = line.straight(1)?;
-    let last = |i: usize, node: &Node| {
+    let last = |i: usize, node: &RodPoint| {
         let worth = |vertex: &Vertex| vertex.connected[2] + vertex.towards * vertex.hit[2];
         connections[i].each_ref().map(|vertex| node.scattering() * worth(vertex))
     };
     let earlier = |here: &Importance| {
-        let carried =
-            |i: usize, node: &Node| node.spread(here.at(i)).map(|worth| node.scattering() * worth);
+        let carried = |i: usize, node: &RodPoint| {
+            node.spread(here.at(i)).map(|worth| node.scattering() * worth)
+        };
         real.solve(&carried, [0.0; 2])
     };
     let root = |importance: &Importance| importance.entering.max(0.0).sqrt();

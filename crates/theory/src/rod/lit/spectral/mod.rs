@@ -39,7 +39,7 @@ pub const FULL: Techniques = Techniques {
 
 /// Scoring of the channels by one draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Tracker {
+pub enum LitTracker {
     /// Scores one channel by its own walk, the others 0.
     Independent {
         /// True if it casts shadow rays.
@@ -54,7 +54,7 @@ pub enum Tracker {
     Tracking(Chances),
 }
 
-impl Tracker {
+impl LitTracker {
     fn techniques(self) -> Techniques {
         match self {
             Self::Independent { casts: true } | Self::Mis { casts: true } => FULL,
@@ -64,11 +64,11 @@ impl Tracker {
 }
 
 /// A chromatic rod with everything that its moments depend on.
-pub struct Spectrum<'a> {
+pub struct RodSpectrum<'a> {
     problem: &'a SpectralLitRod,
     media: Vec<(&'a Mesh, &'a Piecewise)>,
     heroes: Vec<f64>,
-    tracker: Tracker,
+    tracker: LitTracker,
 }
 
 /// Moments of the draws of all channels beside their means.
@@ -82,13 +82,13 @@ pub struct Moments {
 /// The powers of `E[X_λ X_μ]`, `E[X_λ² X_μ]`, `E[X_λ X_μ²]` and `E[X_λ² X_μ²]`.
 const PAIRS: [[usize; 2]; 4] = [[1, 1], [2, 1], [1, 2], [2, 2]];
 
-impl<'a> Spectrum<'a> {
+impl<'a> RodSpectrum<'a> {
     /// Joins the parts; mesh and σ̂, and `heroes`, have one entry for each channel.
     pub fn new(
         problem: &'a SpectralLitRod,
         media: Vec<(&'a Mesh, &'a Piecewise)>,
         heroes: Vec<f64>,
-        tracker: Tracker,
+        tracker: LitTracker,
     ) -> Self {
         Self { problem, media, heroes, tracker }
     }
@@ -110,7 +110,7 @@ impl<'a> Spectrum<'a> {
             .collect();
         let forward = Forward::new(self.problem, &self.media, &self.heroes);
         let lookups = match (self.tracker, &forward) {
-            (Tracker::Tracking(chances), Some(forward)) => forward.lookups(chances),
+            (LitTracker::Tracking(chances), Some(forward)) => forward.lookups(chances),
             _ => None,
         };
         let of_heroes = |found: &Vec<WalkMoments>| {
@@ -124,10 +124,10 @@ impl<'a> Spectrum<'a> {
             each.map(|(weight, found)| Some(weight * found.shadow_lookups?)).sum()
         });
         let moments = match (self.tracker, &forward) {
-            (Tracker::Tracking(chances), forward) => {
+            (LitTracker::Tracking(chances), forward) => {
                 forward.as_ref().and_then(|forward| forward.tracking(chances))
             }
-            (Tracker::Mis { .. }, _) if self.channels() > 1 => {
+            (LitTracker::Mis { .. }, _) if self.channels() > 1 => {
                 self.by_orders(with_distributions).or_else(|| {
                     let is_hits = self.tracker.techniques() == HITS;
                     forward.filter(|_| is_hits)?.balanced()
@@ -159,15 +159,15 @@ impl<'a> Spectrum<'a> {
     /// A bound on `E[X²]` of a channel by MIS over heroes.
     fn most_square(&self, channel: usize, answer: Known) -> Option<f64> {
         let weighted = match self.tracker {
-            Tracker::Mis { casts: true } => {
+            LitTracker::Mis { casts: true } => {
                 let (mesh, sampling) = self.media[channel];
                 bound::weighted_square(mesh, &self.problem.rods[channel], sampling, FULL)?
             }
             // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ, also with history-aware tracking.
-            Tracker::Mis { casts: false } | Tracker::Tracking(Chances::History) => {
+            LitTracker::Mis { casts: false } | LitTracker::Tracking(Chances::History) => {
                 answer.value + answer.error
             }
-            Tracker::Independent { .. } | Tracker::Tracking(_) => return None,
+            LitTracker::Independent { .. } | LitTracker::Tracking(_) => return None,
         };
         Some(weighted / self.heroes[channel])
     }

@@ -31,7 +31,7 @@ use crate::rod::line::Line;
 use crate::rod::lit::connections::along;
 use crate::rod::lit::{walk, with_hit};
 use crate::rod::spectral;
-use crate::rod::walk::Node;
+use crate::rod::walk::RodPoint;
 use media::Piecewise;
 use numeric::Known;
 
@@ -68,7 +68,7 @@ struct Term {
 }
 
 /// Numbers of scatterings that kept the direction, and that turned it.
-struct State {
+struct OrderCounts {
     /// ā, p̄.
     albedo: f64,
     towards: f64,
@@ -127,7 +127,7 @@ impl<'a> Orders<'a> {
     }
 
     /// `q_λ`, ā, p̄ and `c_λ` of a state.
-    fn state(&self, kept: usize, turned: usize) -> State {
+    fn state(&self, kept: usize, turned: usize) -> OrderCounts {
         let (mut all, mut scattered, mut towards) = (0.0, 0.0, 0.0);
         let mut shares = Vec::with_capacity(self.heroes.len());
         for (channel, weight) in self.heroes.iter().enumerate() {
@@ -148,7 +148,7 @@ impl<'a> Orders<'a> {
             }
             powers
         });
-        State {
+        OrderCounts {
             albedo: over(scattered, all),
             towards: over(towards, scattered),
             coefficients: coefficients.collect(),
@@ -197,7 +197,7 @@ impl<'a> Orders<'a> {
                 }
                 let way = usize::from(!is_forward);
                 let solved = sources.iter().map(|source| {
-                    let scattered = |i: usize, node: &Node| {
+                    let scattered = |i: usize, node: &RodPoint| {
                         let mut both = [0.0; 2];
                         both[way] =
                             node.sampling * (1.0 - node.means[0]) * state.albedo * source[i];
@@ -229,7 +229,7 @@ impl Monomial {
     }
 }
 
-impl State {
+impl OrderCounts {
     /// `Π c_λ^{k_λ}`.
     #[inline]
     fn product(&self, channels: [usize; 2], powers: [usize; 2]) -> f64 {
