@@ -95,7 +95,7 @@ impl CheckKind {
 }
 
 /// Every check, in the order of [`CheckId::ALL`].
-pub const CATALOGUE: Registry<CheckKind> = registry![
+pub static CATALOGUE: Registry<CheckKind> = registry![
     mean::CHECK,
     variance::CHECK,
     lookups::CHECK,

@@ -106,7 +106,7 @@ pub trait Estimated: Named {
     type Fields: Fields<Self>;
 
     /// The estimators of this problem.
-    const CATALOGUE: Registry<EstimatorReader<Self>>;
+    const CATALOGUE: &'static Registry<EstimatorReader<Self>>;
 }
 
 /// The estimators of one form of a problem.
@@ -140,9 +140,11 @@ macro_rules! estimators {
         impl $crate::Estimated for $Problem {
             type Fields = $crate::setup::$Fields;
 
-            const CATALOGUE: media::catalogue::Registry<$crate::EstimatorReader<Self>> = {
+            const CATALOGUE: &'static media::catalogue::Registry<$crate::EstimatorReader<Self>> = {
                 use $crate::EstimatorReader;
-                media::registry![EstimatorReader of $($pages)+]
+                static CATALOGUE: media::catalogue::Registry<EstimatorReader<$Problem>> =
+                    media::registry![EstimatorReader of $($pages)+];
+                &CATALOGUE
             };
         }
     };

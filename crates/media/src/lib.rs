@@ -60,7 +60,7 @@ pub type Volume = dyn InSpace;
 
 /// Every page, in the order of registration. A field of one coordinate has the reader of [`Stratified`]; any other page
 /// has its own.
-pub const CATALOGUE: Registry<fn() -> Reader> = registry![
+pub static CATALOGUE: Registry<fn() -> Reader> = registry![
     constant::Constant::reader,
     piecewise_constant::PiecewiseConstant::reader,
     piecewise_linear::PiecewiseLinear::reader,

@@ -34,7 +34,7 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 }
 
 /// Every report that a run writes, in the order of registration.
-pub const CATALOGUE: Registry<Report> = registry![
+pub static CATALOGUE: Registry<Report> = registry![
     summary_csv::render,
     checks_csv::render,
     case_csv::render,

@@ -3,6 +3,9 @@
 use super::{Page, Settings};
 
 /// Pages of one kind, each with a value of type `T`. [`registry!`](crate::registry) lists them, one line a page.
+///
+/// A registry is a `static`. The functions that it points to are then compiled in its own crate; those of a `const` would be
+/// compiled again in every crate that uses it, kernels included.
 #[derive(Debug)]
 pub struct Registry<T: 'static> {
     /// The pages, in the order of registration.

@@ -48,7 +48,7 @@ pub trait PhaseFunction: Sized + Copy + Send + Sync + 'static {
 macro_rules! phases {
     ($($module:ident :: $Page:ident,)*) => {
         /// Every page, in the order of registration.
-        pub const CATALOGUE: Registry<fn(&Settings) -> Option<Phase>> = Registry::new(
+        pub static CATALOGUE: Registry<fn(&Settings) -> Option<Phase>> = Registry::new(
             &[$($crate::page!($module)),*],
             &[$(|page| $module::$Page::read(page).map(Phase::$Page)),*],
         );

@@ -101,7 +101,7 @@ impl Reader {
 }
 
 /// Every recipe, in the order of registration.
-pub const CATALOGUE: Registry<Reader> = registry![
+pub static CATALOGUE: Registry<Reader> = registry![
     Reader of
     constant::Constant,
     piecewise_constant::PiecewiseConstant,
