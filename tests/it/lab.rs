@@ -5,7 +5,7 @@ use lab::self_test::streams::StreamVerdicts;
 use lab::stress::balls::FINER;
 use lab::stress::moments::{Case, products};
 use lab::stress::narrow::trail::{Precision, Traced, Trail};
-use lab::stress::narrow::{Along, CurvePoint, PrecisionCurve};
+use lab::stress::narrow::{Along, BothPrecisions, PrecisionCurve};
 use lab::stress::parameters::between;
 use lab::stress::rods::rod_of;
 use lab::stress::shared_walk::of_mean;
@@ -160,9 +160,10 @@ fn a_difference_of_two_would_break_the_row() {
 
 #[test]
 fn a_bias_counts_only_where_it_is_certain() {
-    let point = CurvePoint { x: 1.0, walks: 9.0, bias: -1e-4, error: 1e-5, noise: 5e-5, z: None };
+    let point =
+        BothPrecisions { x: 1.0, walks: 9.0, bias: -1e-4, error: 1e-5, noise: 5e-5, z: None };
     assert!(point.exceeds());
-    assert!(!CurvePoint { error: 3e-5, ..point }.exceeds());
+    assert!(!BothPrecisions { error: 3e-5, ..point }.exceeds());
     let (family, estimator) = ("Rod", "rod, analog");
     let curve = PrecisionCurve { family, estimator, along: Along::Steps, points: vec![point] };
     assert_eq!(curve.fails_from(), Some(1.0));

@@ -2,13 +2,13 @@
 
 use lab::stress::narrow::scene::StressScene;
 use lab::stress::narrow::walks::FamilyEntry;
-use lab::stress::narrow::{Along, CurvePoint, FAMILIES, compare};
+use lab::stress::narrow::{Along, BothPrecisions, FAMILIES, compare};
 
 fn entries() -> impl Iterator<Item = &'static FamilyEntry> {
     FAMILIES.iter().flat_map(|family| family.entries)
 }
 
-fn at(entry: &FamilyEntry, [depth, collisions, from]: [f64; 3], budget: f64) -> CurvePoint {
+fn at(entry: &FamilyEntry, [depth, collisions, from]: [f64; 3], budget: f64) -> BothPrecisions {
     let scene = StressScene { depth, collisions, from };
     compare(entry, &scene, (7, budget)).expect("a setup")
 }

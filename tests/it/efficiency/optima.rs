@@ -10,7 +10,7 @@ use trueflight::record::{Record, Row};
 use trueflight::report::layout::{self, Pen};
 use trueflight::report::run::console::{self, TableView};
 use trueflight::report::run::sweep_plot;
-use trueflight::theory::prediction::search::Kind;
+use trueflight::theory::prediction::search::PlaceKind;
 
 fn record(text: &str) -> Record {
     let cases = [case("test", text)];
@@ -18,7 +18,7 @@ fn record(text: &str) -> Record {
 }
 
 /// Returns the kind of the best σ̂; `None` if it was not searched.
-fn kind(row: &Row) -> Option<Kind> {
+fn kind(row: &Row) -> Option<PlaceKind> {
     row.best.as_ref().map(|best| best.kind)
 }
 
@@ -52,7 +52,7 @@ fn a_rising_figure_of_merit_has_a_limit_and_no_optimum() {
         let limit = 1.0 / (t * t * 4.0 * square);
         let y = root(1e-3, 5.0, |y| y / y.exp_m1() - 0.9);
         let row = &rows[0];
-        assert_eq!(kind(row), Some(Kind::NearLimit), "{estimator}");
+        assert_eq!(kind(row), Some(PlaceKind::NearLimit), "{estimator}");
         let found =
             [row.best_limit(), row.best_fom(), row.best_sampling()].map(|x| x.expect("found"));
         let expected = [limit, 0.9 * limit, square / y];
@@ -88,7 +88,10 @@ fn setup_lookups_move_the_best_sampling_extinction() {
         let limit = 1.0 / (t * t * square * length);
         let best = root(1e-3, 1e3, |sampling| 0.9 * limit - fom(sampling));
         let row = &rows[0];
-        assert_eq!((row.experiment.setup_lookups, kind(row)), (Some(2), Some(Kind::NearLimit)));
+        assert_eq!(
+            (row.experiment.setup_lookups, kind(row)),
+            (Some(2), Some(PlaceKind::NearLimit))
+        );
         let found =
             [row.best_limit(), row.best_sampling(), row.predicted_fom].map(|x| x.expect("found"));
         let wrong: Vec<_> = ["limit", "σ̂", "at 1"]
@@ -107,7 +110,7 @@ fn a_thin_medium_reaches_its_limit_below_the_search() {
                 sampling.constant.value = 1\nestimators = [{ ratio = {} }]";
     let row = &with_optima(text)[0];
     let y = root(1e-3, 5.0, |y| y / y.exp_m1() - 0.9);
-    assert_eq!(kind(row), Some(Kind::NearLimit));
+    assert_eq!(kind(row), Some(PlaceKind::NearLimit));
     none(
         &differs("σ̂", row.best_sampling().expect("found"), 1e-8 / y, 1e-4)
             .into_iter()
@@ -123,7 +126,7 @@ fn where_collisions_are_too_many_the_limit_is_named_all_the_same() {
     let row = &with_optima(text)[0];
     // ∫σ_t² = 1 + 1999e-6, τ = 1 + 1.999.
     let (square, t) = (1.0 + 1999e-6_f64, (-2.999_f64).exp());
-    assert_eq!(kind(row), Some(Kind::NearLimit));
+    assert_eq!(kind(row), Some(PlaceKind::NearLimit));
     let limit = 1.0 / (t * t * 2000.0 * square);
     none(
         &differs("limit", row.best_limit().expect("found"), limit, 1e-3)
@@ -138,7 +141,7 @@ fn an_optimum_is_called_one() {
         "sampling.constant.value = 1",
         "{ woodcock = {} }, { closed-form = {} }",
     ));
-    assert_eq!((kind(&rows[0]), rows[0].best_limit()), (Some(Kind::Optimum), None));
+    assert_eq!((kind(&rows[0]), rows[0].best_limit()), (Some(PlaceKind::Optimum), None));
     // An estimator without σ̂ has no best σ̂.
     let none = (rows[1].best_sampling(), rows[1].best_fom(), kind(&rows[1]));
     assert_eq!(none, (None, None, None));

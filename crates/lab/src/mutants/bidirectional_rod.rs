@@ -10,8 +10,8 @@
 use super::{Mutant, MutantRow, On, family, on, one_by_one};
 use estimators::bidirectional_rod::Method;
 use estimators::bidirectional_rod::path::Path;
-use estimators::bidirectional_rod::subpath::Tracker;
-use estimators::bidirectional_rod::walk::{Alone, make_paths};
+use estimators::bidirectional_rod::subpath::RodTracker;
+use estimators::bidirectional_rod::walk::{OneLane, make_paths};
 use estimators::{Draw, Setup};
 use gate::CheckId;
 use media::Lookups;
@@ -20,7 +20,7 @@ use numeric::fused::compiled_once;
 use numeric::rng::Stream;
 use numeric::{Lane, Span};
 use theory::light::Heuristic;
-use theory::problems::bidirectional_rod::{MAX_CHANNELS, Values};
+use theory::problems::bidirectional_rod::{BidirectionalValues, MAX_CHANNELS};
 use theory::problems::{BidirectionalRod, Problem};
 use theory::rod::bidirectional::{Combination, quotient};
 
@@ -102,15 +102,15 @@ impl Wrong {
         setup: &Setup<BidirectionalRod>,
         medium: &Lookups,
         random: &mut Stream,
-    ) -> Draw<Values> {
+    ) -> Draw<BidirectionalValues> {
         let (problem, beginning) = (&*setup.problem, *random);
-        let mut values = Values { at: [0.0; MAX_CHANNELS], count: 0 };
+        let mut values = BidirectionalValues { at: [0.0; MAX_CHANNELS], count: 0 };
         // σ̂ of the case has one value.
         let Some(sampling) = setup.fields.sampling.with_gaps() else {
             return Draw::free(values, 0);
         };
         let begin = FlightWithGaps::new(0.0, sampling);
-        let mut tracker = Tracker::new(setup, 0.0, [begin, begin.from_end()], Alone(medium));
+        let mut tracker = RodTracker::new(setup, 0.0, [begin, begin.from_end()], OneLane(medium));
         for order in problem.orders.clone() {
             for s in self.page.combination.techniques(order) {
                 if self.bug == Bug::SameNumbers {

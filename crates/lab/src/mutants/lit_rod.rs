@@ -10,7 +10,7 @@
 use super::altered::{Altered, Change};
 use super::{Mutant, MutantRow, On, family, filled, on};
 use estimators::lit_rod::walk::{Path, Scatterers, ToEmitter};
-use estimators::setup::MutantRow as Along;
+use estimators::setup::Line as Along;
 use estimators::walks::{self, Route, TentativeCollision, Walk};
 use estimators::{Estimated, Setup};
 use gate::CheckId;

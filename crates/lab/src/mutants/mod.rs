@@ -224,7 +224,7 @@ macro_rules! families {
         /// name, or if the setup is of another problem.
         pub fn experiment(
             name: &str,
-            walk: Walk,
+            walk: MutantWalk,
             setup: Box<dyn Any>,
         ) -> Option<Box<dyn Experiment>> {
             $(if let Some(mutant) = $module::$mutants().iter().find(|own| own.about.name == name) {

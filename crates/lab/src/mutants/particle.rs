@@ -230,7 +230,7 @@ impl Change<InRod<'_>> for Bug {
     fn collide<L: Lane>(
         &self,
         walk: &InRod,
-        particle: &mut rod::ParticleSettings<L>,
+        particle: &mut rod::Particle<L>,
         route: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         random: &mut impl Random<L>,
@@ -260,7 +260,7 @@ impl Change<InSlab<'_>> for Bug {
         one: L,
         which: L::Mask,
         random: &mut impl Random<L>,
-    ) -> slab::ParticleSettings<L> {
+    ) -> slab::Particle<L> {
         let mut particle = walk.begin(one, which, random);
         if *self == Self::EvenLight {
             // √(1 − u) becomes 1 − u.
@@ -272,7 +272,7 @@ impl Change<InSlab<'_>> for Bug {
     fn fly<L: Lane>(
         &self,
         walk: &InSlab,
-        particle: &mut slab::ParticleSettings<L>,
+        particle: &mut slab::Particle<L>,
         route: &mut Route<impl BothWays<L>>,
         depth: L,
     ) -> L::Mask {
@@ -288,7 +288,7 @@ impl Change<InSlab<'_>> for Bug {
     fn collide<L: Lane>(
         &self,
         walk: &InSlab,
-        particle: &mut slab::ParticleSettings<L>,
+        particle: &mut slab::Particle<L>,
         route: &mut Route<impl BothWays<L>>,
         met: &TentativeCollision<L>,
         random: &mut impl Random<L>,

@@ -120,7 +120,7 @@ impl Stress {
 }
 
 /// Every page with the function that fills its rows, in the order of the rows.
-pub static PAGES: Registry<fn(Run) -> Vec<Row>> = registry![
+pub static PAGES: Registry<fn(Run) -> Vec<TrialRow>> = registry![
     accumulators::rows,
     elementary::rows,
     tails::rows,

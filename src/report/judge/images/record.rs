@@ -101,7 +101,7 @@ mod tests {
     use crate::judge::images::judgement::{
         ComparisonMethod, Refuted, StackComparison, Variance, VarianceEstimate,
     };
-    use crate::judge::images::{Claim, Level, Options, Size, Stack, judge};
+    use crate::judge::images::{Claim, ImageOptions, Level, Size, Stack, judge};
 
     /// Names of the fields of an object, in their order.
     fn names(within: &str, value: &Value) -> Vec<String> {
@@ -119,7 +119,7 @@ mod tests {
         let size = Size { rows: 1, columns: 2, channels: 1 };
         let stack = Stack::new(2, size, vec![0.0, 1.0, 1.0, 0.0]).expect("a stack");
         let claim = Claim::of_truth(Level::All(0.5));
-        let judged = judge(&stack, &claim, &Options::default()).expect("a judgement");
+        let judged = judge(&stack, &claim, &ImageOptions::default()).expect("a judgement");
         let judgement = Judgement {
             refuted_by: Some(Refuted { pass: 0, row: 0, column: 0, channel: 0, value: f64::NAN }),
             variance: Some(Variance {

@@ -130,9 +130,9 @@ fn in_space<'t, N: Precision, V: Channels + AsRef<[f64]>, const SPLITS: bool>(
 /// Estimators along the ray, and the walks that they make from a setup.
 macro_rules! on_ray {
     ($([$($generic:tt)*] $Type:ty, $Problem:ty: |$this:pat_param, $setup:ident| $walk:expr;)*) => {
-        $(impl<$($generic)*> Draws for $Type {
+        $(impl<$($generic)*> PreciseDraws for $Type {
             #[inline(always)]
-            fn draw<N: Precision>(&self, of: Subject, trail: &Trail) -> Option<f64> {
+            fn draw<N: Precision>(&self, of: StressSubject, trail: &Trail) -> Option<f64> {
                 let ($this, $setup) = (self, of.setup.downcast_ref::<Setup<$Problem>>()?);
                 along::<N, _>(&$walk, $setup, of, trail)
             }
