@@ -94,9 +94,9 @@ fn report(all: Vec<Timed>) {
     println!("{:<20} {:>11} {:>7} {:>7}  least for", "medium", "experiments", "median", "least");
     for (medium, gains) in media {
         let typical = median(gains.iter().map(|(gain, _)| *gain).collect());
-        let (least, name) =
+        let (minimum, name) =
             gains.iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("a medium has experiments");
-        println!("{medium:<20} {:>11} {typical:>7.2} {least:>7.2}  {name}", gains.len());
+        println!("{medium:<20} {:>11} {typical:>7.2} {minimum:>7.2}  {name}", gains.len());
     }
 }
 

@@ -46,7 +46,7 @@ fn main() {
         let n = paces.len() as f64;
         let mean = paces.iter().sum::<f64>() / n;
         let spread = paces.iter().map(|pace| (pace - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let (least, most) = (paces[0], paces[paces.len() - 1]);
-        println!("{name},{n},{mean:.3},{:.3},{least:.3},{most:.3}", (spread / n).sqrt());
+        let (minimum, maximum) = (paces[0], paces[paces.len() - 1]);
+        println!("{name},{n},{mean:.3},{:.3},{minimum:.3},{maximum:.3}", (spread / n).sqrt());
     }
 }

@@ -130,25 +130,25 @@ impl Prices {
     /// where a candidate cannot be drawn.
     ///
     /// Candidates are timed in turn, round by round: other work on the machine slows all of them.
-    pub fn corrected(&mut self, case: &Case, wanted: &[Wanted]) -> Vec<Option<Price>> {
+    pub fn corrected(&mut self, case: &Case, expected: &[Wanted]) -> Vec<Option<Price>> {
         if self.given.is_some() {
-            return vec![None; wanted.len()];
+            return vec![None; expected.len()];
         }
         let key = |(line, (_, at), _): &Wanted| format!("{line} at {:?}", at.map(|(_, x)| x));
-        let timer = |wanted: &Wanted| {
-            let is_known = self.known.contains_key(&key(wanted));
-            (!is_known).then(|| Timer::new(case, wanted.1, ROUNDS[1]))?
+        let timer = |expected: &Wanted| {
+            let is_known = self.known.contains_key(&key(expected));
+            (!is_known).then(|| Timer::new(case, expected.1, ROUNDS[1]))?
         };
-        let mut timers: Vec<Option<Timer>> = wanted.iter().map(timer).collect();
+        let mut timers: Vec<Option<Timer>> = expected.iter().map(timer).collect();
         while timers.iter_mut().flatten().fold(false, |any, timer| timer.round() | any) {}
-        for (wanted, timer) in wanted.iter().zip(timers) {
-            let (Some(Timer { seconds, lookups, .. }), old) = (timer, wanted.2) else { continue };
+        for (expected, timer) in expected.iter().zip(timers) {
+            let (Some(Timer { seconds, lookups, .. }), old) = (timer, expected.2) else { continue };
             let (seconds, error) = fast(seconds);
             let factor = seconds / (old.draw + old.lookup * lookups);
             let price = Price { draw: old.draw * factor, lookup: old.lookup * factor, error };
-            self.known.insert(key(wanted), price);
+            self.known.insert(key(expected), price);
         }
-        wanted.iter().map(|wanted| self.known.get(&key(wanted)).copied()).collect()
+        expected.iter().map(|expected| self.known.get(&key(expected)).copied()).collect()
     }
 
     /// Keeps the prices. Returns a warning if they cannot be kept: the next advice measures them again.

@@ -132,8 +132,8 @@ pub fn advise(spec: &Spec, request: &AdviceRequest) -> Result<Advice, CaseError>
     let listed = candidates::listed(&base, &rays)?;
     let mut prices = Prices::open(&request.costs, &base.spec);
     let mut study = Study::new(&base, &rays, listed, request, &mut prices)?;
-    let found = parallel::map(&study.families(), |family| Row::new(&study, &study.best(family)?));
-    let mut rows: Vec<Row> = found.into_iter().flatten().collect();
+    let result = parallel::map(&study.families(), |family| Row::new(&study, &study.best(family)?));
+    let mut rows: Vec<Row> = result.into_iter().flatten().collect();
     row::rank(&mut rows);
     let first = rows.len().min(CORRECTED);
     row::correct(&mut rows[..first], &mut study, &mut prices);
@@ -141,12 +141,12 @@ pub fn advise(spec: &Spec, request: &AdviceRequest) -> Result<Advice, CaseError>
     // Over several rays, the best σ̂ at a place differs from ray to ray.
     for is_weight in [true, false].into_iter().filter(|_| rays.len() == 1) {
         let rule = |row: &Row| study.rule(row.candidate);
-        let asked = rows.iter().filter_map(|row| Some((row, rule(row)?)));
-        let asked = asked.filter(|(_, rule)| (*rule == Collisions::Weight) == is_weight);
+        let requested = rows.iter().filter_map(|row| Some((row, rule(row)?)));
+        let requested = requested.filter(|(_, rule)| (*rule == Collisions::Weight) == is_weight);
         // A σ̂ cannot gain where draws are exact.
-        let asked = asked.filter(|(row, _)| row.score.variance > 0.0);
-        let asked = asked.min_by(|a, b| a.0.goal.total_cmp(&b.0.goal));
-        let Some((best, rule)) = asked else { continue };
+        let requested = requested.filter(|(row, _)| row.score.variance > 0.0);
+        let requested = requested.min_by(|a, b| a.0.goal.total_cmp(&b.0.goal));
+        let Some((best, rule)) = requested else { continue };
         let Some((profile, candidate)) = profile::of(&study, &rows, best, rule) else { continue };
         let own = Study::new(&base, &rays, vec![candidate], request, &mut prices)?;
         let row = own.best(&[0]).and_then(|best| Row::new(&own, &best));

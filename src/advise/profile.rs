@@ -141,8 +141,8 @@ impl Steps {
     fn roots(&self) -> Vec<f64> {
         let square = |step: &Vec<f64>| step.iter().map(|x| x * x).sum::<f64>() / step.len() as f64;
         let roots: Vec<f64> = self.residual.iter().map(|step| square(step).sqrt()).collect();
-        let least = MIN_SHARE * roots.iter().copied().fold(0.0, f64::max);
-        roots.into_iter().map(|root| root.max(least)).collect()
+        let minimum = MIN_SHARE * roots.iter().copied().fold(0.0, f64::max);
+        roots.into_iter().map(|root| root.max(minimum)).collect()
     }
 
     /// `κ` times the root mean square of the residual in each step.
@@ -161,7 +161,7 @@ impl Steps {
 
     /// Improves the steps one by one.
     fn of_particle(&self, rule: &Single, start: f64) -> Vec<f64> {
-        let (least, roots) = (MIN_SHARE * start, self.roots());
+        let (minimum, roots) = (MIN_SHARE * start, self.roots());
         let mut sampling = vec![start; self.residual.len()];
         let mut shares: Vec<StepShare> =
             (0..sampling.len()).map(|step| self.share(rule, step, start)).collect();
@@ -176,9 +176,10 @@ impl Steps {
                 // A particle that collides for real and one that seldom does are two minima.
                 let starts =
                     [sampling[step], roots[step]].map(|start| goal.least(start, 1, f64::INFINITY));
-                let found = starts.into_iter().flatten().min_by(|a, b| a.value.total_cmp(&b.value));
+                let result =
+                    starts.into_iter().flatten().min_by(|a, b| a.value.total_cmp(&b.value));
                 drop(goal);
-                sampling[step] = found.map_or(sampling[step], |found| found.x).max(least);
+                sampling[step] = result.map_or(sampling[step], |result| result.x).max(minimum);
                 shares[step] = self.share(rule, step, sampling[step]);
             }
             let next = self.of(shares.iter().copied());

@@ -102,13 +102,13 @@ fn listed(problem: &Settings, volume: &Volume, about: &Aabb) -> Option<Vec<Ray>>
         let whole = furthest(about, Point(origin.unwrap_or_default()));
         let length = ray.number_or("length", Domain::Positive, whole);
         ray.close();
-        let found = Ray::new(Point(origin?), Point(direction?), length?);
-        let found = found.filter(|ray| !volume.bounds().clip(ray).is_empty());
-        if found.is_none() {
+        let result = Ray::new(Point(origin?), Point(direction?), length?);
+        let result = result.filter(|ray| !volume.bounds().clip(ray).is_empty());
+        if result.is_none() {
             let help = "give a direction into the volume, and a length that reaches it";
             ray.fault_at(ray.span.clone(), "", "this ray misses the volume", help);
         }
-        found
+        result
     };
     let rays: Vec<Option<Ray>> = problem.tables("rays")?.iter().map(read).collect();
     rays.into_iter().collect()

@@ -83,7 +83,7 @@ pub struct Row {
     /// Factors on σ̂ below and above which V·cost doubles, 0 and infinite for none; `None` where σ̂ is not free.
     pub margins: Option<[f64; 2]>,
     /// Least σ̂ or factor for which the estimator exists with a finite variance, 0 for any; `None` where σ̂ is not free.
-    pub least: Option<f64>,
+    pub minimum: Option<f64>,
     /// Constant σ̂ and the cost to the target error, or the error within the budget, of the first rows with a constant σ̂.
     pub curve: Vec<[f64; 2]>,
     /// Knowledge of the medium that it needs beside lookups.
@@ -100,9 +100,9 @@ impl Row {
         let id = at.id(candidate);
         let edge = |x, sign, level| best.goal.edge(x, sign, level, MAX_FACTOR);
         let margins = |x| [-1.0, 1.0].map(|sign| edge(x, sign, 2.0 * best.goal.of(x)));
-        let least = setting.map(|(_, x)| x * edge(x, -1.0, UNKNOWN));
-        let below = setting.zip(least).filter(|&(_, least)| least > 0.0);
-        let below = below.map(|((what, _), least)| (candidate, Some((what, BELOW * least))));
+        let minimum = setting.map(|(_, x)| x * edge(x, -1.0, UNKNOWN));
+        let below = setting.zip(minimum).filter(|&(_, minimum)| minimum > 0.0);
+        let below = below.map(|((what, _), minimum)| (candidate, Some((what, BELOW * minimum))));
         let bound = below.and_then(|below| study.violated(below, 0..study.cases.len()));
         let known = at.needs(candidate);
         let own = match () {
@@ -133,7 +133,7 @@ impl Row {
             kind: best.kind,
             cost_error: study.prices[candidate]?.error,
             margins: setting.map(|(_, x)| margins(x)),
-            least,
+            minimum,
             needs: needs.into_iter().flatten().collect::<Vec<_>>().join(", "),
             lines: lines(&listed.line(), constant, factor),
             ..Self::default()
@@ -191,14 +191,14 @@ fn lines(line: &str, constant: Option<f64>, factor: Option<f64>) -> String {
 
 /// Corrects the prices of rows by draws at their advised settings, unless prices are given.
 pub fn correct(rows: &mut [Row], study: &mut Study, prices: &mut Prices) {
-    let wanted = |row: &Row| {
+    let expected = |row: &Row| {
         let line = study.candidates[row.candidate].line();
         Some((line, (row.candidate, row.setting), study.prices[row.candidate]?))
     };
     // Every row has a price.
-    let wanted: Vec<Wanted> = rows.iter().filter_map(wanted).collect();
-    let found = prices.corrected(&study.cases[study.cases.len() / 2], &wanted);
-    for (row, price) in rows.iter_mut().zip(found).filter_map(|(row, price)| Some((row, price?))) {
+    let expected: Vec<Wanted> = rows.iter().filter_map(expected).collect();
+    let result = prices.corrected(&study.cases[study.cases.len() / 2], &expected);
+    for (row, price) in rows.iter_mut().zip(result).filter_map(|(row, price)| Some((row, price?))) {
         study.prices[row.candidate] = Some(price);
         if let Some(score) = study.score_of_all((row.candidate, row.setting)) {
             row.cost_error = price.error;

@@ -161,9 +161,9 @@ impl<'a> Study<'a> {
         let key = (candidate, ray, seed);
         let known = self.at_scale.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
         let mut prediction = known.unwrap_or_else(|| {
-            let found = estimate(Some((what, scale)));
+            let result = estimate(Some((what, scale)));
             let mut all = self.at_scale.lock().unwrap_or_else(PoisonError::into_inner);
-            all.entry(key).or_insert(found).clone()
+            all.entry(key).or_insert(result).clone()
         })?;
         let factor = x / scale;
         for channel in &mut prediction.channels {
@@ -294,20 +294,22 @@ impl<'a> Study<'a> {
         let is_constant = self.free[lead].is_some_and(|free| free.what == SweptQuantity::Sampling);
         let reach = if is_constant { REACH } else { 1 };
         let first = self.least(lead, (scale(lead), reach), f64::INFINITY);
-        let start = first.as_ref().map_or(1.0, |(least, _)| least.x / scale(lead));
-        let enough = first.as_ref().map_or(f64::INFINITY, |(least, _)| BEHIND * least.value);
+        let start = first.as_ref().map_or(1.0, |(minimum, _)| minimum.x / scale(lead));
+        let enough = first.as_ref().map_or(f64::INFINITY, |(minimum, _)| BEHIND * minimum.value);
         let others: Vec<usize> = family.iter().copied().filter(|&other| other != lead).collect();
         let search = |&other: &usize| self.least(other, (start * scale(other), 1), enough);
         let all = others.iter().copied().zip(parallel::map(&others, search));
         let all: Vec<_> =
-            all.chain([(lead, first)]).filter_map(|(i, found)| Some((i, found?))).collect();
-        let least = all.iter().map(|(_, (least, _))| least.value).fold(f64::INFINITY, f64::min);
-        let near = all.into_iter().filter(|(_, (own, _))| own.value <= least * (1.0 + ABOVE_LIMIT));
-        let near = near.map(|(candidate, (least, goal))| {
+            all.chain([(lead, first)]).filter_map(|(i, result)| Some((i, result?))).collect();
+        let minimum =
+            all.iter().map(|(_, (minimum, _))| minimum.value).fold(f64::INFINITY, f64::min);
+        let near =
+            all.into_iter().filter(|(_, (own, _))| own.value <= minimum * (1.0 + ABOVE_LIMIT));
+        let near = near.map(|(candidate, (minimum, goal))| {
             let (setting, value, kind) = match self.free[candidate] {
-                None => (None, least.value, PlaceKind::Fixed),
+                None => (None, minimum.value, PlaceKind::Fixed),
                 Some(Free { what, .. }) => {
-                    let (x, value, kind) = goal.settled(least);
+                    let (x, value, kind) = goal.settled(minimum);
                     (Some((what, x)), value, kind)
                 }
             };

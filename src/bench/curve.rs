@@ -150,8 +150,8 @@ mod tests {
             values.chunks(length).for_each(|chunk| sample.absorb(&buffer(chunk)));
             sample.end();
             for (look, n) in [64, 128, 200].into_iter().enumerate() {
-                let found = sample.channels[0].error(look).expect("a round").typical;
-                assert!((found - (mean(n) - 2.0) / 2.0).abs() < 1e-14, "{length}, {n}: {found}");
+                let result = sample.channels[0].error(look).expect("a round").typical;
+                assert!((result - (mean(n) - 2.0) / 2.0).abs() < 1e-14, "{length}, {n}: {result}");
             }
             assert_eq!(sample.channels[0].tally.draws, 200);
             assert_eq!(sample.lookups.moments().map(|moments| moments.mean), Some(3.0));

@@ -36,7 +36,7 @@ pub fn of(TimedExperiment { planned, laps, sample, .. }: &TimedExperiment) -> Ve
         }
     };
     let observed = sample.lookups.moments().map(|moments| moments.mean);
-    let predicted_lookups = ready.prediction.lookups.as_ref().map(|law| law.mean);
+    let predicted_lookups = ready.prediction.lookups.as_ref().map(|distribution| distribution.mean);
     let lookups = predicted_lookups.or(observed);
     let cost = lookups.map(|n| n + ready.prediction.shared_setup(planned.draws_per_ray));
     let both = ready.prediction.channels.iter().zip(&sample.channels).enumerate();

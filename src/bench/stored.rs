@@ -223,14 +223,14 @@ mod tests {
             stored(&[("a", [9.0, 10.0, 11.0]), ("b", [9.0, 10.0, 11.0]), ("old", [1.0; 3])]);
         let mut later =
             stored(&[("a", [19.0, 20.0, 21.0]), ("b", [4.0, 5.0, 6.0]), ("new", [1.0; 3])]);
-        let found = compare("main", &before, &later, 0.25);
-        assert!(found.fails());
-        let told: Vec<_> = found.changes.iter().map(|c| (c.ratio, c.is_regression)).collect();
+        let result = compare("main", &before, &later, 0.25);
+        assert!(result.fails());
+        let told: Vec<_> = result.changes.iter().map(|c| (c.ratio, c.is_regression)).collect();
         assert_eq!(told, [(2.0, true), (0.5, false)]);
-        assert_eq!((found.added, found.missing), (vec![id("new")], vec![id("old")]));
+        assert_eq!((result.added, result.missing), (vec![id("new")], vec![id("old")]));
         "another".clone_into(&mut later.timed[0].case);
-        let found = compare("main", &before, &later, 0.25);
-        assert!(!found.fails() && found.rewritten == [id("a")] && !found.is_empty());
+        let result = compare("main", &before, &later, 0.25);
+        assert!(!result.fails() && result.rewritten == [id("a")] && !result.is_empty());
         let other = stored(&[("other", [1.0; 3])]);
         assert!(compare("main", &before, &other, 0.25).is_empty());
     }

@@ -145,12 +145,12 @@ pub(super) fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refu
         if !(truth.is_finite() && truth >= FAINTEST && is_known) {
             let needs = "an answer between 1e-300 and infinity";
             let channel = &channel.name;
-            let found = if truth.is_nan() || !is_known {
+            let actual = if truth.is_nan() || !is_known {
                 format!("theory does not know {channel}")
             } else {
                 format!("{channel} is {truth:e}")
             };
-            return Err(Refusal::mismatch(needs, found));
+            return Err(Refusal::mismatch(needs, actual));
         }
         // The mean of a biased estimator may differ from the truth, which is the unit of all numbers.
         let mean = channel.mean.value;

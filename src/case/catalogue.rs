@@ -165,7 +165,7 @@ fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let mut found = Vec::new();
+    let mut actual = Vec::new();
     let mut folders = vec![path.to_owned()];
     let mut seen = BTreeSet::new();
     while let Some(folder) = folders.pop() {
@@ -178,13 +178,13 @@ fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
             if entry.is_dir() {
                 folders.push(entry);
             } else if entry.extension().is_some_and(|extension| extension == "toml") {
-                found.push(entry);
+                actual.push(entry);
             }
         }
     }
-    found.sort();
-    if found.is_empty() {
+    actual.sort();
+    if actual.is_empty() {
         return Err(CaseError::Empty { path: path.display().to_string() });
     }
-    Ok(found)
+    Ok(actual)
 }

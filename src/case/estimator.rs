@@ -176,13 +176,13 @@ fn reading<P: Estimated, T>(
         readers.push(reader);
     }
     let mut entries = Vec::new();
-    let found = read(&offer, &mut |index, settings| {
+    let actual = read(&offer, &mut |index, settings| {
         let entry = readers[index].0(settings)?;
         let traits = entry.traits();
         entries.push(entry);
         Some(traits)
     })?;
-    Some((found, entries))
+    Some((actual, entries))
 }
 
 impl Offer {
@@ -283,8 +283,8 @@ impl Estimators {
         &'a self,
         parsed: &'a ParsedEstimator,
     ) -> Option<&'a dyn sampling::Recipe> {
-        let wanted = parsed.traits.inputs.sampling;
-        wanted.then(|| parsed.sampling.as_deref().or(self.sampling.as_deref())).flatten()
+        let expected = parsed.traits.inputs.sampling;
+        expected.then(|| parsed.sampling.as_deref().or(self.sampling.as_deref())).flatten()
     }
 
     /// Returns the control that the case gives for an estimator.
@@ -292,8 +292,8 @@ impl Estimators {
         &'a self,
         parsed: &'a ParsedEstimator,
     ) -> Option<&'a dyn controls::Recipe> {
-        let wanted = parsed.traits.inputs.control;
-        wanted.then(|| parsed.control.as_deref().or(self.control.as_deref())).flatten()
+        let expected = parsed.traits.inputs.control;
+        expected.then(|| parsed.control.as_deref().or(self.control.as_deref())).flatten()
     }
 
     /// Returns the control of an estimator.

@@ -200,8 +200,8 @@ impl Case {
             )),
             Err(faults) => {
                 let needs = "a case that can be read at this value of the sweep";
-                let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
-                Err(Refusal::mismatch(needs, found))
+                let actual = faults.first().map_or_else(String::new, |fault| fault.message.clone());
+                Err(Refusal::mismatch(needs, actual))
             }
         }
     }

@@ -418,9 +418,9 @@ impl<'a> ScenarioAtPoint<'a> {
         let mut parts = self.parts(estimator, None, pilots).ok()?;
         parts.0.channels[0].0 = mesh.clone();
         // Where the coarse mesh refuses, the fine one decides.
-        let found = self.predict_by(estimator, parts);
-        let found = found.filter(|found| found.channels[0].resolved_moments().is_some());
-        found.or_else(|| self.predict(estimator, None, pilots))
+        let actual = self.predict_by(estimator, parts);
+        let actual = actual.filter(|actual| actual.channels[0].resolved_moments().is_some());
+        actual.or_else(|| self.predict(estimator, None, pilots))
     }
 
     /// Returns the control of an experiment; `None` where it cannot be made.

@@ -72,10 +72,10 @@ impl Spec {
     ///
     /// Every mistake in the file.
     pub fn read<T>(&self, read: impl FnOnce(&Settings) -> Option<T>) -> Result<T, CaseError> {
-        let (found, further) = self.attempt(read);
+        let (actual, further) = self.attempt(read);
         let faults: Vec<Fault> = self.faults.iter().cloned().chain(further).collect();
-        match found {
-            Some(found) if faults.is_empty() => Ok(found),
+        match actual {
+            Some(actual) if faults.is_empty() => Ok(actual),
             _ => Err(self.source.faulty(faults)),
         }
     }
@@ -88,9 +88,9 @@ impl Spec {
         let faults = RefCell::default();
         let folder = self.source.path.parent().unwrap_or(Path::new(""));
         let settings = Settings::new(&self.root, folder, &faults).with(&self.own_pages);
-        let found = read(&settings);
+        let actual = read(&settings);
         drop(settings);
-        (found, faults.into_inner())
+        (actual, faults.into_inner())
     }
 
     /// Returns the name of a case's problem, and its settings; `None` without one.

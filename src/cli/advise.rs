@@ -53,12 +53,12 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     arguments.out.iter().try_for_each(|out| output::can_write(out))?;
     let source = catalogue::source(&arguments.case);
     let request = arguments.request();
-    let found = match source.and_then(|source| Spec::parse(&source, catalogue.own_pages())) {
+    let result = match source.and_then(|source| Spec::parse(&source, catalogue.own_pages())) {
         Ok(spec) => arguments.threads.install(|| Ok(advise(&spec, &request)))?,
         Err(error) => Err(error),
     };
     let wrong = |error| output::mistakes(&[error], console, ["case file", "nothing was advised"]);
-    let advice = found.map_err(wrong)?;
+    let advice = result.map_err(wrong)?;
     let mut errors = Errors::default();
     errors.keep(match arguments.format {
         RowFormat::Table if console.quiet => Ok(()),

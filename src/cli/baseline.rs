@@ -139,10 +139,10 @@ impl Baselines {
         if let Some(nothing) = diff::nothing(comparison) {
             return self.files.complaint(&nothing, "run the cases of the baseline");
         }
-        let wanted = self.time_tolerance.filter(|_| comparison.rules.time_tolerance.is_some())?;
+        let expected = self.time_tolerance.filter(|_| comparison.rules.time_tolerance.is_some())?;
         let no_times = diff::no_times(comparison)?;
         Some(anyhow!(
-            "--time-tolerance {wanted}: {no_times}; draw more with --draws --fixed-draws, or leave the \
+            "--time-tolerance {expected}: {no_times}; draw more with --draws --fixed-draws, or leave the \
              option out"
         ))
     }

@@ -113,8 +113,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
 /// Returns a level of vector hardware by its name.
 fn level(name: &str) -> Result<Level, String> {
     let levels = pack::levels();
-    let found = levels.iter().find(|level| pack::word(**level) == name);
-    found.copied().ok_or_else(|| {
+    let result = levels.iter().find(|level| pack::word(**level) == name);
+    result.copied().ok_or_else(|| {
         let names: Vec<String> = levels.iter().map(|&level| pack::word(level)).collect();
         format!("this machine has {}", names.join(", "))
     })

@@ -75,8 +75,8 @@ impl TypedValueParser for CataloguePart {
         argument: Option<&clap::Arg>,
         value: &OsStr,
     ) -> Result<What, clap::Error> {
-        let found = EnumValueParser::<What>::new().parse_ref(command, argument, value);
-        found.map_err(|error| {
+        let result = EnumValueParser::<What>::new().parse_ref(command, argument, value);
+        result.map_err(|error| {
             let name = value.to_string_lossy();
             let mut known = pages(&Catalogue::builtin()).into_iter();
             let Some((part, _)) = known.find(|(_, page)| page.name() == name) else { return error };
@@ -129,21 +129,21 @@ pub fn list(arguments: &List, catalogue: &Catalogue, console: &Console) -> anyho
 /// Returns the rows of one part of the catalogue, or of all of it.
 fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<ListingRow> {
     let what = what.map(What::name);
-    let wanted =
+    let expected =
         |part: &str| what.as_deref().is_none_or(|what| part.split(' ').next() == Some(what));
-    let wanted_pages = pages(catalogue).into_iter().filter(|(part, _)| wanted(part));
+    let wanted_pages = pages(catalogue).into_iter().filter(|(part, _)| expected(part));
     let row = |(part, page): (String, Page)| {
         let (name, summary) = (page.name(), page.summary());
         ListingRow { part, name, summary }
     };
     let mut rows: Vec<ListingRow> = wanted_pages.map(row).collect();
-    if wanted("cases") {
+    if expected("cases") {
         for source in suite::suite() {
             let title = catalogue.read(&source).map(|case| case.title).unwrap_or_default();
             rows.push(ListingRow { part: "cases".into(), name: source.name, summary: title });
         }
     }
-    if wanted("pictures") {
+    if expected("pictures") {
         for source in render::gallery() {
             let title = Picture::read(&source, catalogue.own_pages())
                 .map(|picture| picture.title)
@@ -171,19 +171,19 @@ pub fn explain(
     // `free flight`, `free_flight` and `Free-Flight` are `free-flight`.
     let written = arguments.name.join("-");
     let name = &written.to_lowercase().replace('_', "-");
-    let found = explained(name, catalogue);
-    if found.is_empty() {
+    let result = explained(name, catalogue);
+    if result.is_empty() {
         let Ok(what) = What::from_str(name, true) else {
             return Err(unknown(&written, name, catalogue));
         };
         return print_rows(&rows(Some(what), catalogue), RowFormat::Table, console);
     }
-    print_pages(name, found, console)
+    print_pages(name, result, console)
 }
 
 /// Returns the pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
 fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let pictures = format!("estimators of {}", MultipleScattering::title());
     for (part, page) in pages(catalogue).into_iter().filter(|(_, page)| page.name() == name) {
         let mut text = page.text().trim_end().to_owned();
@@ -195,13 +195,13 @@ fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
             };
             text += &fenced(&example);
         }
-        found.push((part, text));
+        result.push((part, text));
     }
     let files = [("cases", suite::find(name)), ("pictures", render::find(name))];
     for (part, source) in files {
-        found.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
+        result.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
     }
-    found
+    result
 }
 
 fn fenced(toml: &str) -> String {

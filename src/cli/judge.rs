@@ -159,20 +159,20 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         return images::main(arguments, console);
     }
     let claimed = arguments.claimed(catalogue)?;
-    let wanted = Options {
+    let expected = Options {
         tolerance: arguments.tolerance,
         variance_tolerance: arguments.variance_tolerance,
         alpha: arguments.alpha / arguments.files.len() as f64,
         batch: arguments.batch,
         stop_early: arguments.stop_early,
-        most: arguments.draws,
+        maximum: arguments.draws,
     };
     // Mistakes in the arguments are reported before anything is read.
-    claimed.check(wanted)?;
-    if let Some(tolerance) = wanted.tolerance.filter(|_| claimed.is_relative()) {
+    claimed.check(expected)?;
+    if let Some(tolerance) = expected.tolerance.filter(|_| claimed.is_relative()) {
         numbers::check_share("--tolerance", tolerance)?;
     }
-    if let Some(tolerance) = wanted.variance_tolerance {
+    if let Some(tolerance) = expected.variance_tolerance {
         numbers::check_share("--variance-tolerance", tolerance)?;
     }
     if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
@@ -181,14 +181,16 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     arguments.check_junit("draws")?;
     let (mut judged, mut errors) = (Vec::new(), Vec::new());
     for file in &arguments.files {
-        match arguments.judge(file, &claimed, wanted) {
-            Ok(found) => judged.extend(found),
+        match arguments.judge(file, &claimed, expected) {
+            Ok(finding) => judged.extend(finding),
             Err(error) => errors.push((name(file), error)),
         }
     }
     arguments.show(&judged, console)?;
-    let told: Vec<JUnitCase> =
-        judged.iter().map(|found| JUnitCase::of_draws(&found.name(), &found.judgement)).collect();
+    let told: Vec<JUnitCase> = judged
+        .iter()
+        .map(|finding| JUnitCase::of_draws(&finding.name(), &finding.judgement))
+        .collect();
     let unread: Vec<(String, String)> =
         errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
     arguments.write_junit(&told, &unread)?;
@@ -198,7 +200,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     if !errors.is_empty() {
         return Ok(USAGE);
     }
-    Ok(arguments.code(worst(&judged.iter().map(|found| &found.judgement))))
+    Ok(arguments.code(worst(&judged.iter().map(|finding| &finding.judgement))))
 }
 
 /// Verdict on the draws of a file, or on one channel of them.
@@ -268,7 +270,7 @@ impl Arguments {
         &self,
         file: &Path,
         claimed: &Claimed,
-        wanted: Options,
+        expected: Options,
     ) -> anyhow::Result<Vec<JudgedDraws>> {
         let format = self.input_format(file)?;
         let layout = claimed.layout(self.column.as_deref());
@@ -280,9 +282,9 @@ impl Arguments {
                 DrawSource::open_as(file, format, &layout)?
             };
             let length = draws.known_length();
-            let most = wanted.most.or_else(|| length.is_none().then_some(OF_A_PIPE));
-            let wanted = Options { most, ..wanted };
-            return claimed.judge(&name(file), &mut draws, wanted, length);
+            let maximum = expected.maximum.or_else(|| length.is_none().then_some(OF_A_PIPE));
+            let expected = Options { maximum, ..expected };
+            return claimed.judge(&name(file), &mut draws, expected, length);
         }
         let length =
             match (DrawSource::open_as(file, format.clone(), &layout)?.known_length(), &format) {
@@ -295,7 +297,7 @@ impl Arguments {
                 (length, _) => length,
             };
         let mut draws = DrawSource::open_as(file, format, &layout)?;
-        claimed.judge(&name(file), &mut draws, wanted, length)
+        claimed.judge(&name(file), &mut draws, expected, length)
     }
 
     fn input_format(&self, file: &Path) -> anyhow::Result<NumberFormat> {
@@ -335,7 +337,7 @@ impl Arguments {
                 let width = output::pen(console).width;
                 let blocks: Vec<String> = judged
                     .iter()
-                    .map(|found| report::block(&found.judgement, &found.name(), width))
+                    .map(|finding| report::block(&finding.judgement, &finding.name(), width))
                     .collect();
                 output::print(&(blocks.join("\n") + &self.together(judged)))
             }
@@ -353,12 +355,12 @@ impl Arguments {
 
     /// Returns the summary of several verdicts.
     fn together(&self, judged: &[JudgedDraws]) -> String {
-        let verdicts = judged.iter().map(|found| &found.judgement);
+        let verdicts = judged.iter().map(|finding| &finding.judgement);
         let files = Self::by_file(judged);
         let of = match (&files[..], self.files.len()) {
             ([[_]], 1) => return String::new(),
             ([channels], 1) => {
-                let names: Vec<&str> = channels.iter().map(|found| &*found.channel).collect();
+                let names: Vec<&str> = channels.iter().map(|finding| &*finding.channel).collect();
                 format!(
                     "of {} channels of {} ({})",
                     names.len(),
@@ -384,9 +386,9 @@ impl Arguments {
         let of_file = |channels: &[JudgedDraws]| match channels {
             [one] if one.channel.is_empty() => serde_json::json!({ "judgement": one.judgement }),
             _ => {
-                let verdict = worst(&channels.iter().map(|found| &found.judgement));
-                let channels = channels.iter().map(|found| {
-                    serde_json::json!({ "channel": found.channel, "judgement": found.judgement })
+                let verdict = worst(&channels.iter().map(|finding| &finding.judgement));
+                let channels = channels.iter().map(|finding| {
+                    serde_json::json!({ "channel": finding.channel, "judgement": finding.judgement })
                 });
                 let channels: Vec<serde_json::Value> = channels.collect();
                 serde_json::json!({ "verdict": verdict, "channels": channels })
@@ -400,7 +402,7 @@ impl Arguments {
             .into_iter()
             .map(|channels| with(of_file(channels), "file", serde_json::json!(channels[0].file)))
             .collect();
-        let verdict = worst(&judged.iter().map(|found| &found.judgement));
+        let verdict = worst(&judged.iter().map(|finding| &finding.judgement));
         serde_json::json!({ "verdict": verdict, "alpha": self.alpha, "files": files })
     }
 }

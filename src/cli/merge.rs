@@ -45,10 +45,10 @@ pub fn merge(arguments: &Merge, catalogue: &Catalogue, console: &Console) -> any
         bail!("the parts are not one run:\n  {}", faults.join("\n  "));
     }
     let header = parts[0].header.clone();
-    let mut asked = run::Arguments::of(&header.words)?.asked;
-    asked.reports = arguments.reports.clone();
+    let mut requested = run::Arguments::of(&header.words)?.requested;
+    requested.reports = arguments.reports.clone();
     // Draws of an earlier run are not a part.
-    run::judge(&asked, RUN, &ResumeArguments::FRESH, catalogue, console, |plan| {
+    run::judge(&requested, RUN, &ResumeArguments::FRESH, catalogue, console, |plan| {
         let own = Header::new(plan, &fingerprint()?, &header.words, None);
         if let Some(why) = header.mismatch(&own) {
             bail!("{} cannot be judged here: {why}", arguments.parts[0].display());

@@ -101,15 +101,15 @@ fn table(record: &PictureRecord, seconds: f64) -> String {
     );
     for exposure in &record.exposures {
         let _ = match &exposure.outcome {
-            Ok(found) => writeln!(
+            Ok(result) => writeln!(
                 text,
                 "  {:<40} RMSE {:<9} theory {:<9} lookups/pixel {:<7} draws/pixel {:<7} fom {}",
                 exposure.estimator.to_string(),
-                report::render::short(found.rmse),
-                found.predicted_rmse.map_or("–".into(), report::render::short),
-                report::render::short(found.lookups),
-                report::render::short(found.draws),
-                found.figure_of_merit.map_or("–".into(), report::render::short),
+                report::render::short(result.rmse),
+                result.predicted_rmse.map_or("–".into(), report::render::short),
+                report::render::short(result.lookups),
+                report::render::short(result.draws),
+                result.figure_of_merit.map_or("–".into(), report::render::short),
             ),
             Err(reason) => {
                 writeln!(text, "  {:<40} refused: {reason}", exposure.estimator.to_string())

@@ -43,7 +43,7 @@ const CHECK: CommandDefaults = CommandDefaults { draws: 400_000, out: None, is_w
 #[derive(Debug, Clone, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    pub asked: CheckArguments,
+    pub requested: CheckArguments,
     #[command(flatten)]
     kept: ResumeArguments,
 }
@@ -111,17 +111,17 @@ impl Arguments {
 
     /// Returns the words that ask for the same draws.
     pub fn words(&self) -> anyhow::Result<Vec<String>> {
-        Ok(self.asked.words(&self.options()?))
+        Ok(self.requested.words(&self.options()?))
     }
 
     /// Returns the options of the plan.
     pub fn options(&self) -> anyhow::Result<Options> {
-        self.asked.options(RUN)
+        self.requested.options(RUN)
     }
 
     /// Returns the folder of the results.
     pub fn out(&self) -> PathBuf {
-        self.asked.out(RUN).unwrap_or_default()
+        self.requested.out(RUN).unwrap_or_default()
     }
 
     /// Returns whether the run is shared out.
@@ -132,17 +132,17 @@ impl Arguments {
     /// Returns the arguments of the interrupted run that is resumed, or the same.
     pub fn resumed(&self) -> anyhow::Result<Self> {
         let Some(folder) = &self.kept.resume else { return Ok(self.clone()) };
-        if self.asked.looks.shares_draws() {
+        if self.requested.looks.shares_draws() {
             bail!("a resumed run makes the draws that its command asked for: give --budget a time");
         }
         let header = journal::header(folder)?;
-        let Self { mut asked, mut kept } = self.clone();
-        let known = Self::of(&header.words)?.asked;
-        asked.selection = known.selection.on_threads_of(&asked.selection);
-        asked.looks = known.looks.with_budget_of(&asked.looks);
-        asked.reports.out = Some(folder.clone());
+        let Self { mut requested, mut kept } = self.clone();
+        let known = Self::of(&header.words)?.requested;
+        requested.selection = known.selection.on_threads_of(&requested.selection);
+        requested.looks = known.looks.with_budget_of(&requested.looks);
+        requested.reports.out = Some(folder.clone());
         kept.shard = header.share;
-        Ok(Self { asked, kept })
+        Ok(Self { requested, kept })
     }
 }
 
@@ -153,11 +153,11 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
 
 /// Draws and judges with the defaults of `check`.
 pub fn check(
-    asked: &CheckArguments,
+    requested: &CheckArguments,
     catalogue: &Catalogue,
     console: &Console,
 ) -> anyhow::Result<u8> {
-    judge(asked, CHECK, &ResumeArguments::FRESH, catalogue, console, |_| Ok(Store::default()))
+    judge(requested, CHECK, &ResumeArguments::FRESH, catalogue, console, |_| Ok(Store::default()))
 }
 
 /// Lets workers draw a run, or the rest of a resumed one.
@@ -167,16 +167,17 @@ pub fn draw(
     catalogue: &Catalogue,
     console: &Console,
 ) -> anyhow::Result<u8> {
-    let Arguments { asked, kept } = arguments;
+    let Arguments { requested, kept } = arguments;
     let out = arguments.out();
-    let is_timed = asked.looks.budget.is_some();
-    if kept.shard.is_some() && (is_timed || asked.baseline.is_used()) {
+    let is_timed = requested.looks.budget.is_some();
+    if kept.shard.is_some() && (is_timed || requested.baseline.is_used()) {
         bail!("a share is drawn whole and compared with nothing: leave out --budget and baselines");
     }
     let store = |plan: &Plan| -> anyhow::Result<Store> {
-        let header = Header::new(plan, &fingerprint()?, &asked.words(&plan.options), kept.shard);
+        let header =
+            Header::new(plan, &fingerprint()?, &requested.words(&plan.options), kept.shard);
         workers.agree(&header).map_err(anyhow::Error::msg)?;
-        if asked.looks.shares_draws() {
+        if requested.looks.shares_draws() {
             // The number of draws left for an experiment depends on what others have drawn.
             let mut store = Store::new(header);
             store.workers = workers;
@@ -186,7 +187,7 @@ pub fn draw(
     };
     match kept.shard {
         Some(share) => draw_share(arguments, share, catalogue, console, store),
-        None => judge(asked, RUN, kept, catalogue, console, store),
+        None => judge(requested, RUN, kept, catalogue, console, store),
     }
 }
 
@@ -198,7 +199,7 @@ fn draw_share(
     console: &Console,
     store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,
 ) -> anyhow::Result<u8> {
-    let (selection, out) = (&arguments.asked.selection, arguments.out());
+    let (selection, out) = (&arguments.requested.selection, arguments.out());
     let cases = selection.read(catalogue, console)?;
     output::writable(&out)?;
     let options = arguments.options()?;
@@ -240,25 +241,25 @@ fn draw_share(
 
 /// Draws the blocks that the store does not have, judges, writes, prints.
 pub fn judge(
-    asked: &CheckArguments,
+    requested: &CheckArguments,
     profile: CommandDefaults,
     kept: &ResumeArguments,
     catalogue: &Catalogue,
     console: &Console,
     store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,
 ) -> anyhow::Result<u8> {
-    let (selection, reports) = (&asked.selection, &asked.reports);
+    let (selection, reports) = (&requested.selection, &requested.reports);
     let cases = selection.read(catalogue, console)?;
-    let out = asked.out(profile);
+    let out = requested.out(profile);
     // A folder that cannot be written to is reported before the drawing, not after it.
     reports.writable(out.as_deref(), &cases)?;
-    let baselines = asked.baseline.open()?;
+    let baselines = requested.baseline.open()?;
     // A comparison needs times and evidence of its own.
-    let is_fresh = kept.fresh || asked.baseline.is_used();
-    let finished = out.as_deref().filter(|_| profile.is_whole && !asked.looks.shares_draws());
+    let is_fresh = kept.fresh || requested.baseline.is_used();
+    let finished = out.as_deref().filter(|_| profile.is_whole && !requested.looks.shares_draws());
     let finished = finished.map(journal::finished);
     let cure = out.as_deref().map_or(String::new(), journal::resume);
-    let options = asked.options(profile)?;
+    let options = requested.options(profile)?;
     let (record, [reused, ready], finishing, store) =
         selection.with_plan(&cases, &options, console, |plan| {
             let mut store = store(plan)?;

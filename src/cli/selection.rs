@@ -121,7 +121,7 @@ impl Experiments {
         for name in &self.cases {
             catalogue
                 .named(name)
-                .map_or_else(|found| errors.extend(found), |found| cases.extend(found));
+                .map_or_else(|result| errors.extend(result), |result| cases.extend(result));
         }
         if errors.is_empty() {
             return distinct(cases);
@@ -203,9 +203,9 @@ pub fn on_threads<T: Send>(
     threads: usize,
     f: impl FnOnce() -> anyhow::Result<T> + Send,
 ) -> anyhow::Result<T> {
-    let (mut f, mut found) = (Some(f), None);
-    install(threads, &mut || found = f.take().map(|f| f()))?;
-    found.context("the threads did nothing")?
+    let (mut f, mut result) = (Some(f), None);
+    install(threads, &mut || result = f.take().map(|f| f()))?;
+    result.context("the threads did nothing")?
 }
 
 /// Calls `f` once on this number of threads: rayon's way to its threads is compiled here alone.

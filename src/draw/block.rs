@@ -42,7 +42,7 @@ pub fn merged(
     every: u64,
     is_over: &dyn Fn() -> bool,
 ) -> Option<Block> {
-    let mut found: Option<Block> = None;
+    let mut result: Option<Block> = None;
     for block in number * every..(number + 1) * every {
         if block * BLOCK >= planned.horizon {
             break;
@@ -51,12 +51,12 @@ pub fn merged(
             return None;
         }
         let next = Block::drawn(planned, block)?;
-        match &mut found {
+        match &mut result {
             Some(all) => all.merge(planned, &next),
             none => *none = Some(next),
         }
     }
-    found
+    result
 }
 
 impl Block {
@@ -181,7 +181,8 @@ impl<'p> OpenBlock<'p> {
             for (index, (tally, channel)) in channels.enumerate() {
                 tally.merge(&draws.tally(index, channel.mean.value, channel.truth.value));
             }
-            let expected = prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
+            let expected =
+                prediction.lookups.as_ref().map_or(0.0, |distribution| distribution.mean);
             self.lookups.merge(&draws.tally_of_lookups(expected));
         }
         self.at += count as u64;

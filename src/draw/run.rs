@@ -92,7 +92,7 @@ pub fn draw_with<'p>(plan: &'p Plan, store: &Store, listen: &Listener) -> Draws<
     expect(&rounds);
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
-    let until = Until { most: None, is_decided: true };
+    let until = Until { maximum: None, is_decided: true };
     let Ok::<_, Infallible>(_) = drive(&mut rounds, until, |rounds, _| {
         let Rounds(running) = rounds;
         // Draws that other experiments need up to their fixed numbers are reserved.

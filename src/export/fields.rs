@@ -128,8 +128,8 @@ impl ExportReader<'_> {
             };
             return Ok(MediumFields { shape, fields });
         }
-        let most = self.wishes.cells.unwrap_or(CELLS[0]);
-        let size = own.map_or_else(|| cells(around, most), |own| own.0);
+        let maximum = self.wishes.cells.unwrap_or(CELLS[0]);
+        let size = own.map_or_else(|| cells(around, maximum), |own| own.0);
         let nearest = own.is_some_and(|own| own.1) && self.target == Target::Mitsuba;
         let sample =
             |volume: &Arc<Volume>| Sampled::of_volume(&**volume, rounded(around), size, nearest);
@@ -201,12 +201,12 @@ fn rounded(Aabb { low, high }: Aabb) -> Aabb {
     Aabb { low: Point(low.0.map(single)), high: Point(high.0.map(single)) }
 }
 
-/// Returns the numbers of cubic cells of a box along each axis, `most` of them along the longest.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to `most`
-fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
+/// Returns the numbers of cubic cells of a box along each axis, `maximum` of them along the longest.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to `maximum`
+fn cells(bounds: Aabb, maximum: usize) -> [usize; 3] {
     let edges: [f64; 3] = std::array::from_fn(|axis| bounds.high.0[axis] - bounds.low.0[axis]);
     let longest = edges.iter().copied().fold(0.0, f64::max);
-    edges.map(|edge| ((edge / longest * most as f64).round() as usize).max(1))
+    edges.map(|edge| ((edge / longest * maximum as f64).round() as usize).max(1))
 }
 
 /// Name of the file.

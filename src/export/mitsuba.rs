@@ -23,7 +23,7 @@ pub(super) fn number(x: f64) -> String {
 
 /// Returns the text of a scene file.
 pub fn text(scene: &ExportedScene, view: &ExportedView) -> String {
-    let depth = scene.scatterings.map_or(-1, |most| i64::from(most) + 1);
+    let depth = scene.scatterings.map_or(-1, |maximum| i64::from(maximum) + 1);
     let mut text = format!(
         r#"<?xml version="1.0" encoding="utf-8"?>
 <scene version="3.0.0">

@@ -62,10 +62,10 @@ pub fn read(
         reader.sphere(body, sphere)
     } else {
         let settings = case.spec.problem().map_or(&[][..], |(_, settings)| settings);
-        let asked =
+        let requested =
             forms::chosen_form(&case.problem, settings).map_or(String::new(), |form| form.title);
         Err((
-            format!("renderers do not answer what `{asked}` asks"),
+            format!("renderers do not answer what `{requested}` asks"),
             "take a case of transmittance, furnace, slab or single-scattering (of one channel or several), or ball",
         ))
     };

@@ -230,8 +230,8 @@ fn samples(scene: &ExportedScene, light: ExportedLight) -> [Option<(SampleProper
         return [None, None];
     }
     if scene.is_coloured() {
-        let met = !matches!(light, ExportedLight::Point { .. });
-        return [met.then(|| (within(None), false)), Some((within(None), false))];
+        let extinctions = !matches!(light, ExportedLight::Point { .. });
+        return [extinctions.then(|| (within(None), false)), Some((within(None), false))];
     }
     match (scene.problem, light) {
         ("transmittance", _) => [Some((within(Some(1.0)), true)); 2],

@@ -52,7 +52,7 @@ pub enum ChoiceError {
     /// The value of the sweep is missing.
     #[error(
         "{case}: `{estimator}` is swept over {what}: {}; say at which value your draws were made, by --swept (in Python \
-         sampling=, elsewhere the last argument of `of`); any value will do that is {wanted}",
+         sampling=, elsewhere the last argument of `of`); any value will do that is {expected}",
         list(values)
     )]
     Swept {
@@ -60,11 +60,11 @@ pub enum ChoiceError {
         estimator: String,
         what: &'static str,
         values: Vec<f64>,
-        wanted: &'static str,
+        expected: &'static str,
     },
     /// A value that the swept quantity cannot have.
     #[error(
-        "{case}: `{estimator}`: {what} = {} is not {wanted}{}",
+        "{case}: `{estimator}`: {what} = {} is not {expected}{}",
         number(*value),
         near(*nearest)
     )]
@@ -73,7 +73,7 @@ pub enum ChoiceError {
         estimator: String,
         what: &'static str,
         value: f64,
-        wanted: &'static str,
+        expected: &'static str,
         nearest: Option<f64>,
     },
     /// A swept value for an estimator that is not swept.
@@ -119,8 +119,8 @@ pub fn theory(
     let mut about = format!("`{label}` of {}", case.name);
     if let Some((what, value)) = variation {
         let _ = write!(about, ", {} = {}", what.key(), number(value));
-        if let Some(asked) = choice.swept.filter(|_| choice.nearest) {
-            let _ = write!(about, ", the value of the sweep nearest to {}", number(asked));
+        if let Some(requested) = choice.swept.filter(|_| choice.nearest) {
+            let _ = write!(about, ", the value of the sweep nearest to {}", number(requested));
         }
     }
     let channels = claims(case, &prediction, rounding);
@@ -220,12 +220,12 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
             variance_error: channel.moments.map_or(0.0, |moments| moments.error),
             kurtosis: channel.moments.and_then(|m| m.kurtosis()).filter(|k| k.is_finite()),
             range: None,
-            lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
-                mean: law.mean,
-                variance: Some(law.variance),
-                error: CountDistribution::ERROR.max(law.error),
+            lookups: lookups.filter(|density| density.mean > 0.0).map(|density| Lookups {
+                mean: density.mean,
+                variance: Some(density.variance),
+                error: CountDistribution::ERROR.max(density.error),
             }),
-            rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
+            rounding: checks::rounding(lookups.map_or(0.0, |density| density.mean)).max(rounding),
             flights,
         };
         (channel.name.clone(), claim)
@@ -261,15 +261,15 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ChoiceError> {
     let matching = |is_it: &dyn Fn(&usize) -> bool| -> Vec<usize> {
         (0..plain.len()).filter(|e| is_it(e)).collect()
     };
-    let found = [matching(&numbered), matching(&called), matching(&catalogue)];
-    let found = found.into_iter().find(|found| !found.is_empty()).unwrap_or_default();
+    let finding = [matching(&numbered), matching(&called), matching(&catalogue)];
+    let finding = finding.into_iter().find(|finding| !finding.is_empty()).unwrap_or_default();
     let one = case;
     let (case, name) = (case.name.clone(), name.to_owned());
-    match found[..] {
+    match finding[..] {
         [one] => Ok((one, labels[one].clone())),
         [] => Err(ChoiceError::NoEstimator { case, name, candidates: labels }),
         _ => {
-            let candidates = found.iter().map(|&e| {
+            let candidates = finding.iter().map(|&e| {
                 let id = one.id(e, None);
                 let about = [id.sampling.constant.map(|s| format!("σ̂ {s}")), Some(id.control)];
                 let about: Vec<String> =
@@ -313,8 +313,8 @@ impl SweptEstimator<'_> {
             }
             (Some(axis), None) => {
                 let (what, values) = (axis.what.key(), axis.values.clone());
-                let wanted = axis.what.domain();
-                Err(ChoiceError::Swept { case, estimator, what, values, wanted })
+                let expected = axis.what.domain();
+                Err(ChoiceError::Swept { case, estimator, what, values, expected })
             }
             (Some(axis), Some(value)) if choice.nearest => {
                 let nearest = self.by_distance(value).first().copied();
@@ -334,8 +334,8 @@ impl SweptEstimator<'_> {
         }
         let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
         let nearest = self.accepted(what, value);
-        let (what, wanted) = (what.key(), what.domain());
-        Err(ChoiceError::NoSuchValue { case, estimator, what, value, wanted, nearest })
+        let (what, expected) = (what.key(), what.domain());
+        Err(ChoiceError::NoSuchValue { case, estimator, what, value, expected, nearest })
     }
 
     /// Returns the values of the sweep, the nearest first.

@@ -232,7 +232,7 @@ fn plan_experiment(
     options: &Options,
     (estimator, variation): (usize, Variation),
 ) -> PlannedExperiment {
-    let most = options.draws.of(case.draws);
+    let maximum = options.draws.of(case.draws);
     let address = case.address(options.seed, estimator, variation);
     let pilots = case.pilots(options.seed, estimator);
     let at = case.at(variation);
@@ -246,9 +246,9 @@ fn plan_experiment(
         needs,
         draws_per_ray: case.draws_per_ray,
         address,
-        draws: most,
-        fixed: most,
-        horizon: most,
+        draws: maximum,
+        fixed: maximum,
+        horizon: maximum,
         expect_biased: case.scenario.expects_bias(estimator),
         outcome,
         questions: Vec::new(),
@@ -260,34 +260,34 @@ impl PlannedExperiment {
     /// Returns whether two experiments make the same draws, and have the same questions.
     fn is_same(&self, other: &Self) -> bool {
         let of = |one: &Self| (one.address, one.draws, one.fixed, one.horizon, one.expect_biased);
-        let asked = |one: &Self| one.questions.iter().map(|q| q.check).collect::<Vec<_>>();
+        let requested = |one: &Self| one.questions.iter().map(|q| q.check).collect::<Vec<_>>();
         self.outcome.is_ok()
             && other.outcome.is_ok()
             && of(self) == of(other)
-            && asked(self) == asked(other)
+            && requested(self) == requested(other)
     }
 
     /// Collects the questions of all checks, first for the number of draws that the case's tolerances need, then for
     /// good.
     fn ask(&mut self, case: &Case, options: &Options) {
         let Ok(ready) = &self.outcome else { return };
-        let most = self.draws;
+        let maximum = self.draws;
         let channels = || ready.prediction.channels.iter();
         let forced = self.expect_biased && channels().any(|channel| channel.moments.is_none());
         let pilots = (forced || channels().any(|channel| channel.pilot_variance_allowed))
             .then(|| self.pilots(ready));
         let mut subject = Subject {
             prediction: &ready.prediction,
-            draws: most,
-            most,
-            fixed: fixed(most),
+            draws: maximum,
+            maximum,
+            fixed: fixed(maximum),
             tolerance: case.tolerance,
             expect_biased: self.expect_biased,
             has_invariant: ready.experiment.has_invariant(),
             pilots: pilots.as_deref(),
         };
         if case.tolerance.is_given() {
-            let needed = needed(&checks::questions(&subject), most);
+            let needed = needed(&checks::questions(&subject), maximum);
             subject.draws = needed;
             subject.fixed = fixed(needed);
         }
@@ -342,14 +342,14 @@ fn horizon(draws: u64) -> u64 {
     (draws as f64 * gate::HORIZON / gate::PLANNED).ceil() as u64
 }
 
-/// Returns the number of draws that every check needs that can pass within `most` draws: at the case's tolerances or,
+/// Returns the number of draws that every check needs that can pass within `maximum` draws: at the case's tolerances or,
 /// where it has none, at the widest for which a pass is promised.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `most`
-fn needed(questions: &[Question], most: u64) -> u64 {
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `maximum`
+fn needed(questions: &[Question], maximum: u64) -> u64 {
     let promised = questions.iter().filter_map(|question| {
         let planned = &question.answer.scalar()?.planned;
-        planned.underpowered.is_none().then_some(planned.least)
+        planned.underpowered.is_none().then_some(planned.minimum)
     });
     let needed = promised.fold(0.0, f64::max);
-    if needed > 0.0 { needed.ceil().min(most as f64) as u64 } else { most }
+    if needed > 0.0 { needed.ceil().min(maximum as f64) as u64 } else { maximum }
 }

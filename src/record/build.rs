@@ -181,10 +181,10 @@ fn experiment(plan: &Plan, judged: &Judged) -> ExperimentRecord {
         };
     }
     for values in &mut record.channels {
-        let found = || record.findings.iter().filter(|finding| finding.is_about(&values.channel));
-        let mean = found().find(|finding| finding.check == CheckId::Mean);
+        let result = || record.findings.iter().filter(|finding| finding.is_about(&values.channel));
+        let mean = result().find(|finding| finding.check == CheckId::Mean);
         values.detectable_bias = mean.and_then(|mean| mean.gate).map(|gate| gate.tolerance);
-        let verdict = Verdict::worst(found().map(|finding| finding.verdict));
+        let verdict = Verdict::worst(result().map(|finding| finding.verdict));
         values.verdict = Some(verdict);
         if verdict == Verdict::Inconclusive {
             values.decide = deciding(plan, case, planned, &record.findings);
@@ -222,7 +222,7 @@ fn scalars(case: &CaseRecord) -> impl Iterator<Item = (Row<'_>, &Finding)> {
     let own = case.rows().filter(|row| row.experiment.same_as.is_none());
     own.flat_map(|row| {
         let scalars =
-            row.own_findings().filter(|found| found.gate.is_some() && !found.expects_bias);
+            row.own_findings().filter(|result| result.gate.is_some() && !result.expects_bias);
         scalars.map(move |finding| (row, finding))
     })
 }
@@ -244,8 +244,8 @@ fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
     let means = case.rows().flat_map(|row| row.findings()).filter(|f| f.check == CheckId::Mean);
     let promised = means.filter_map(|finding| finding.gate.filter(|gate| gate.needed.is_none()));
     let tolerances: Vec<f64> = promised.map(|gate| gate.tolerance).collect();
-    let least = tolerances.iter().copied().reduce(f64::min)?;
-    let range = [least, tolerances.iter().copied().fold(least, f64::max)];
+    let minimum = tolerances.iter().copied().reduce(f64::min)?;
+    let range = [minimum, tolerances.iter().copied().fold(minimum, f64::max)];
     Some(range).filter(|range| range.iter().all(|end| end.is_finite()))
 }
 

@@ -143,9 +143,9 @@ pub fn curves(case: &Case, seed: u64) -> Vec<PredictedCurve> {
         let id = case.id(estimator, axis.values.first().map(|&x| (axis.what, x)));
         let is_sought = axis.what == SweptQuantity::Sampling;
         let best = is_sought.then(|| best(case, seed, estimator, None));
-        let found = |channel: usize| best.as_ref()?.get(channel).copied().flatten();
+        let finding = |channel: usize| best.as_ref()?.get(channel).copied().flatten();
         let optimum = |channel: usize| {
-            let at = found(channel)?.sampling;
+            let at = finding(channel)?.sampling;
             let mut points = (low..=high)
                 .contains(&at)
                 .then(|| points(case, seed, estimator, Some((SweptQuantity::Sampling, at)), at))?;
@@ -158,7 +158,7 @@ pub fn curves(case: &Case, seed: u64) -> Vec<PredictedCurve> {
                 channel: channel.clone(),
                 points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
                 optimum: optimum(index),
-                best: found(index).map(named_best),
+                best: finding(index).map(named_best),
                 ..without_points(&id, estimator)
             };
         let curves: Vec<PredictedCurve> = named.iter().enumerate().map(curve).collect();
@@ -181,19 +181,19 @@ pub fn best_of_each<'p>(
     seed: u64,
 ) -> Vec<(&'p PlannedExperiment, Vec<Option<Optimum>>)> {
     // Experiments that differ in σ̂ only have the same best σ̂.
-    let asked = |planned: &PlannedExperiment| {
+    let requested = |planned: &PlannedExperiment| {
         let is_of_sampling = |(what, _): &(SweptQuantity, f64)| {
             matches!(what, SweptQuantity::Sampling | SweptQuantity::SamplingScale)
         };
         (planned.estimator, planned.id.variation().filter(|variation| !is_of_sampling(variation)))
     };
-    let mut questions: Vec<_> = case.experiments.iter().map(asked).collect();
+    let mut questions: Vec<_> = case.experiments.iter().map(requested).collect();
     questions.dedup();
-    let found = parallel::map(&questions, |&(estimator, variation)| {
+    let finding = parallel::map(&questions, |&(estimator, variation)| {
         ((estimator, variation), best(case.case, seed, estimator, variation))
     });
     let answer = |planned: &'p PlannedExperiment| {
-        let answer = found.iter().find(|(question, _)| *question == asked(planned));
+        let answer = finding.iter().find(|(question, _)| *question == requested(planned));
         (planned, answer.map_or(Vec::new(), |(_, best)| best.clone()))
     };
     case.experiments.iter().map(answer).collect()
@@ -239,7 +239,7 @@ fn points(
     let Some(prediction) = at.and_then(|at| at.predict(estimator, None, pilots)) else {
         return Vec::new();
     };
-    let lookups = prediction.lookups.as_ref().map(|law| law.mean);
+    let lookups = prediction.lookups.as_ref().map(|distribution| distribution.mean);
     let (cost, setup_lookups) = (prediction.cost(case.draws_per_ray), prediction.setup_lookups);
     let point = |channel: &Channel| {
         let (variance, lookups) = (channel.moments?.variance(), lookups?);

@@ -69,13 +69,13 @@ fn findings(plan: &Plan, of: &DrawnExperiment) -> Vec<Finding> {
             expects_bias: false,
             channel: String::new(),
             z: None,
-            found: CheckResult::new(Verdict::Inconclusive, Some(Reason::NothingDrawn)),
+            result: CheckResult::new(Verdict::Inconclusive, Some(Reason::NothingDrawn)),
         }];
     }
     let Ok(ready) = &planned.outcome else { return Vec::new() };
     let both = planned.questions.iter().zip(&drawn.totals);
-    let found = both.map(|(question, total)| finding(plan, of, ready, question, total));
-    let mut findings: Vec<Finding> = found.collect();
+    let result = both.map(|(question, total)| finding(plan, of, ready, question, total));
+    let mut findings: Vec<Finding> = result.collect();
     qualify_means(planned, &mut findings);
     if planned.expect_biased {
         show_anywhere(&mut findings);
@@ -99,7 +99,7 @@ fn finding(
         let mean = channel.mean.value + tally.moments()?.mean * truth;
         Some(Deviation::new(mean, truth, tally.draws))
     });
-    let found = question.answer.finish(
+    let result = question.answer.finish(
         total,
         &Context {
             what: &question.what,
@@ -123,7 +123,7 @@ fn finding(
         expects_bias: question.expects_bias,
         channel: channel.map_or(String::new(), |channel| channel.name.clone()),
         z: None,
-        found: CheckResult { path: thinned(&found.path), ..found },
+        result: CheckResult { path: thinned(&result.path), ..result },
     }
 }
 

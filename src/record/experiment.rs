@@ -234,20 +234,20 @@ pub struct Finding {
     pub z: Option<f64>,
     /// The result of the check; a finding dereferences to it.
     #[serde(flatten)]
-    pub found: CheckResult,
+    pub result: CheckResult,
 }
 
 impl Deref for Finding {
     type Target = CheckResult;
 
     fn deref(&self) -> &CheckResult {
-        &self.found
+        &self.result
     }
 }
 
 impl DerefMut for Finding {
     fn deref_mut(&mut self) -> &mut CheckResult {
-        &mut self.found
+        &mut self.result
     }
 }
 

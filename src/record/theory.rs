@@ -32,28 +32,35 @@ pub fn predicted(case: &PlannedCase, planned: &PlannedExperiment) -> ExperimentR
         }
     };
     let prediction = &ready.prediction;
-    let law = prediction.lookups.as_ref();
-    let shadow_lookups = prediction.shadow_lookups.filter(|_| law.is_some());
+    let distribution = prediction.lookups.as_ref();
+    let shadow_lookups = prediction.shadow_lookups.filter(|_| distribution.is_some());
     let cost = prediction.cost(planned.draws_per_ray);
     let mut channels: Vec<ChannelRecord> =
         prediction.channels.iter().map(|channel| of_channel(channel, cost)).collect();
     for covariance in prediction.covariances.iter().filter(|c| c.pair[1] == c.pair[0] + 1) {
         channels[covariance.pair[0]].covariance = finite(Some(covariance.value));
     }
-    let pmf = law.filter(|law| law.pmf.len() <= MAX_DISTRIBUTION).map(|law| law.pmf.clone());
+    let pmf = distribution
+        .filter(|distribution| distribution.pmf.len() <= MAX_DISTRIBUTION)
+        .map(|distribution| distribution.pmf.clone());
     ExperimentRecord {
         same_as: planned.same_as.clone(),
         skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),
-        predicted_lookups: law.map(|law| law.mean),
+        predicted_lookups: distribution.map(|distribution| distribution.mean),
         setup_lookups: Some(prediction.setup_lookups),
         stable_share: prediction.stable_share,
-        lookups_variance: law.map(|law| law.variance),
-        lookups_error: finite(law.map(|law| law.error.max(CountDistribution::ERROR))),
-        lookups_grade: law.map(|law| law.grade),
-        lookups_moments_error: finite(
-            law.map(|law| law.moments_error.max(CountDistribution::ERROR)),
+        lookups_variance: distribution.map(|distribution| distribution.variance),
+        lookups_error: finite(
+            distribution.map(|distribution| distribution.error.max(CountDistribution::ERROR)),
         ),
-        walk_lookups: law.zip(shadow_lookups).map(|(law, shadow)| law.mean - shadow),
+        lookups_grade: distribution.map(|distribution| distribution.grade),
+        lookups_moments_error: finite(
+            distribution
+                .map(|distribution| distribution.moments_error.max(CountDistribution::ERROR)),
+        ),
+        walk_lookups: distribution
+            .zip(shadow_lookups)
+            .map(|(distribution, shadow)| distribution.mean - shadow),
         shadow_lookups,
         lookups_pmf: pmf.unwrap_or_default(),
         channels,
@@ -114,7 +121,8 @@ pub fn measure(
     }
     let setup = prediction.shared_setup(planned.draws_per_ray);
     let cost = record.lookups_per_draw.map(|lookups| lookups + setup);
-    let of_lookups = prediction.lookups.as_ref().map(|law| needed(law.kurtosis, 1.0));
+    let of_lookups =
+        prediction.lookups.as_ref().map(|distribution| needed(distribution.kurtosis, 1.0));
     let looked = drawn.lookups.draws as f64;
     let z_lookups = (record.z_lookups, of_lookups.is_some_and(|needed| looked >= needed));
     for (values, (channel, tally)) in record.channels.iter_mut().zip(channels) {
@@ -128,13 +136,15 @@ pub fn measure(
 /// Adds the mean lookups of the fixed draws, and their z-score.
 fn measure_lookups(record: &mut ExperimentRecord, prediction: &Prediction, lookups: &Tally) {
     let n = lookups.draws as f64;
-    let law = prediction.lookups.as_ref();
+    let distribution = prediction.lookups.as_ref();
     let observed = lookups.moments().map(|m| m.mean);
-    record.lookups_per_draw = observed.map(|mean| mean + law.map_or(0.0, |law| law.mean));
-    if let Some(law) = law.filter(|law| law.variance > 0.0) {
-        let deviation = (law.variance / n).sqrt();
+    record.lookups_per_draw =
+        observed.map(|mean| mean + distribution.map_or(0.0, |distribution| distribution.mean));
+    if let Some(distribution) = distribution.filter(|distribution| distribution.variance > 0.0) {
+        let deviation = (distribution.variance / n).sqrt();
         record.lookups_deviation = Some(deviation);
-        record.z_lookups = observed.filter(|_| law.is_sharp()).map(|mean| mean / deviation);
+        record.z_lookups =
+            observed.filter(|_| distribution.is_sharp()).map(|mean| mean / deviation);
     }
 }
 

@@ -101,8 +101,10 @@ impl PixelPlan {
         let control = fitted.iter().sum::<u64>() as f64 / fitted.len() as f64;
         let draws = (budget as f64 - control) / expected;
         if draws.is_nan() || draws < 1.0 {
-            let least = number((expected + control).ceil());
-            return Err(format!("a draw takes {least} lookups at a pixel, and there are {budget}"));
+            let minimum = number((expected + control).ceil());
+            return Err(format!(
+                "a draw takes {minimum} lookups at a pixel, and there are {budget}"
+            ));
         }
         if draws > MAX_DRAWS {
             let (expected, draws) = (rounded(expected), rounded(draws));
@@ -190,10 +192,10 @@ mod tests {
         let plan = PixelPlan::new([Ok(of(5.0))].iter(), 0, 20).expect("4 draws");
         let pixel =
             PixelDraws { draws: 4, sum: [2.0, 4.0, 0.0], squares: [2.0, 4.0, 0.0], lookups: 18 };
-        let found = plan.gather(3, &[pixel]);
+        let actual = plan.gather(3, &[pixel]);
         // 0, 0, 1, 1: s² = 1/3, over 4 draws; then four times 1, and four times 0.
-        assert!((found.square_errors[0] - 1.0 / 12.0).abs() < 1e-15);
-        assert_eq!(found.square_errors[1..], [0.0; 2]);
-        assert_eq!((found.values, found.predicted), (vec![0.5, 1.0, 0.0], vec![0.25; 3]));
+        assert!((actual.square_errors[0] - 1.0 / 12.0).abs() < 1e-15);
+        assert_eq!(actual.square_errors[1..], [0.0; 2]);
+        assert_eq!((actual.values, actual.predicted), (vec![0.5, 1.0, 0.0], vec![0.25; 3]));
     }
 }

@@ -94,9 +94,9 @@ impl<'a> Pixel<'a> {
 
     /// Returns the exact answer in each channel, or that of a quadrature with `panels` panels.
     pub fn answer(&self, panels: Option<usize>) -> Option<Vec<Known>> {
-        let found = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n))?;
+        let actual = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n))?;
         let seen = |known: Known| known * self.sky;
-        Some(found.into_iter().map(seen).collect())
+        Some(actual.into_iter().map(seen).collect())
     }
 
     fn parts<'b>(
@@ -151,7 +151,7 @@ impl<'a> Pixel<'a> {
         }
         let prediction = self.kind.is_predicted.then(|| joined.predict());
         let leads = self.leader.is_none();
-        let known = prediction.and_then(|found| Some((found.lookups?.mean, found.channels)));
+        let known = prediction.and_then(|actual| Some((actual.lookups?.mean, actual.channels)));
         if let Some((lookups, channels)) = known {
             let (mut variance, mut bias) = (Some(Colour::default()), Colour::default());
             for (c, channel) in channels.iter().take(self.kind.channels).enumerate() {

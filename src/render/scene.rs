@@ -159,14 +159,14 @@ impl PictureScene {
         let (pixels, answers): (Vec<_>, Vec<_>) = pixels.into_iter().unzip();
         let mut images: Vec<(Label, Result<PixelValues, String>)> = Vec::new();
         for (index, (listed, plan)) in listed.into_iter().zip(plans).enumerate() {
-            let found = plan.and_then(|plan| {
+            let actual = plan.and_then(|plan| {
                 let of_pixel = |all: &Vec<Option<PixelDraws>>| all[index];
                 let pixels: Option<Vec<PixelDraws>> = pixels.iter().map(of_pixel).collect();
                 pixels
                     .map(|pixels| plan.gather(self.kind.channels, &pixels))
                     .ok_or_else(|| "no image".to_owned())
             });
-            images.push((listed.label, found));
+            images.push((listed.label, actual));
         }
         let reference = self.reference.of(&mut images, &answers);
         Rendered { budget: self.lookups, channels: self.kind.channels, covered, reference, images }
@@ -247,8 +247,8 @@ impl Reference {
             Self::Quadrature { panels } => format!("Gauss quadrature, {} nodes", 32 * panels),
             Self::Draws { .. } => {
                 return match images.pop() {
-                    Some((label, Ok(found))) => {
-                        (format!("many draws of {}", label.estimator), found)
+                    Some((label, Ok(actual))) => {
+                        (format!("many draws of {}", label.estimator), actual)
                     }
                     Some((_, Err(refusal))) => (format!("none: {refusal}"), PixelValues::default()),
                     None => Default::default(),

@@ -137,8 +137,8 @@ fn read<P: PictureSubject>(
     if let (Some(view), Some(shared)) = (view, &shared) {
         let rays = (0..view.pixels()).filter_map(|pixel| view.covered(pixel));
         let refused = rays.map(|ray| P::allows(shared, &ray)).find_map(Result::err);
-        if let Some([found, help]) = refused {
-            settings.fault("light", found, help);
+        if let Some([actual, help]) = refused {
+            settings.fault("light", actual, help);
         }
     }
     let estimators = Estimators::read::<P>(settings, body, defaults);
@@ -281,8 +281,8 @@ impl PictureSubject for SingleScattering {
 
     fn allows(shared: &Lit, ray: &Ray) -> Result<(), [String; 2]> {
         shared.lamp.seen_from(ray).map(drop).map_err(|OnTheLine(distance)| {
-            let found = format!("the light is {distance:e} away from the line of a pixel's ray");
-            [found, "move it a little: on the ray the radiance is infinite".into()]
+            let actual = format!("the light is {distance:e} away from the line of a pixel's ray");
+            [actual, "move it a little: on the ray the radiance is infinite".into()]
         })
     }
 

@@ -63,12 +63,12 @@ impl Camera {
             camera.fault("angle", format!("`angle` is {angle}"), help);
             return None;
         }
-        let found = Self::new(Point(position), Point(target), Point(up), angle, size?);
-        if found.is_none() {
+        let actual = Self::new(Point(position), Point(target), Point(up), angle, size?);
+        if actual.is_none() {
             let help = "`target` is not `position`, and `up` points aside of the view";
             settings.fault("camera", "this camera has no direction", help);
         }
-        found
+        actual
     }
 
     /// Returns the beginning of all rays.
@@ -179,14 +179,14 @@ fn read_one(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
 fn read_colours(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
     let fields = read_volumes(settings)?;
     if fields.len() != MAX_CHANNELS {
-        let found = format!("`volume` lists {} channels", fields.len());
-        settings.fault("volume", found, "a coloured picture takes three: red, green and blue");
+        let actual = format!("`volume` lists {} channels", fields.len());
+        settings.fault("volume", actual, "a coloured picture takes three: red, green and blue");
         return None;
     }
     let (mut names, volumes): (Vec<String>, Vec<Arc<Volume>>) = fields.into_iter().unzip();
     if volumes.iter().any(|volume| volume.bounds() != volumes[0].bounds()) {
-        let found = "the channels do not fill the same part of space";
-        settings.fault("volume", found, "give all of them the same `bounds`");
+        let actual = "the channels do not fill the same part of space";
+        settings.fault("volume", actual, "give all of them the same `bounds`");
         return None;
     }
     names.dedup();
@@ -202,12 +202,12 @@ pub fn furthest(about: &Aabb, from: Point) -> f64 {
 }
 
 fn read_size(settings: &Settings) -> Option<[usize; 2]> {
-    let wanted = "columns and rows, as in [128, 128]";
+    let required = "columns and rows, as in [128, 128]";
     let list = settings.numbers("size", Domain::Positive, 2)?;
     let is_size = |&x: &f64| x.fract() == 0.0 && x <= MAX_SIDE as f64;
     if list.len() != 2 || !list.iter().all(is_size) {
-        let found = format!("`size` is {list:?}");
-        settings.fault("size", found, format!("it takes {wanted}, {MAX_SIDE} at most"));
+        let actual = format!("`size` is {list:?}");
+        settings.fault("size", actual, format!("it takes {required}, {MAX_SIDE} at most"));
         return None;
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before

@@ -175,10 +175,10 @@ impl TableLayout {
         dropped
     }
 
-    fn shorten(&mut self, limit: usize, least: usize) {
+    fn shorten(&mut self, limit: usize, minimum: usize) {
         let excess = self.width().saturating_sub(limit);
         if let Some(names) = self.columns.first_mut().filter(|_| excess > 0) {
-            let room = names.width().saturating_sub(excess).max(least);
+            let room = names.width().saturating_sub(excess).max(minimum);
             for field in &mut names.fields {
                 field.text = middle_elided(&field.text, room);
             }

@@ -32,6 +32,6 @@ pub fn grouped<T>(
 }
 
 /// Returns the number of things that a list of at most this length leaves out; `None` for none.
-pub fn left_out(all: usize, most: usize) -> Option<usize> {
-    all.checked_sub(most).filter(|&left| left > 0)
+pub fn left_out(all: usize, maximum: usize) -> Option<usize> {
+    all.checked_sub(maximum).filter(|&left| left > 0)
 }

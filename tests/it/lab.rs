@@ -207,7 +207,7 @@ fn repeated_decisions_have_the_mean_of_walks_that_make_their_own() {
 #[test]
 fn a_promise_is_broken_by_more_fails_than_chance_allows() {
     let of = |failed| StreamVerdicts {
-        law: String::new(),
+        distribution: String::new(),
         known: String::new(),
         streams: 1000,
         passed: 1000 - failed,

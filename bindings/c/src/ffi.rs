@@ -62,10 +62,10 @@ pub(crate) unsafe fn query<T>(
     let Some(check) = (unsafe { check.as_ref() }) else {
         return Err(remember(&null("the check")));
     };
-    let found = check
+    let result = check
         .query()
         .and_then(|mut session| caught(|| act(&mut session)).map_err(|error| session.named(error)));
-    found.map_err(|error| remember(&error))
+    result.map_err(|error| remember(&error))
 }
 
 /// Borrows a text of the caller's.

@@ -59,18 +59,18 @@ pub struct Numbers {
 }
 
 impl From<&Judgement> for Numbers {
-    fn from(found: &Judgement) -> Self {
+    fn from(computed: &Judgement) -> Self {
         let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
         Self {
-            verdict: found.verdict.into(),
-            draws: found.draws,
-            truth: found.truth,
-            mean: number(found.mean),
-            standard_error: number(found.standard_error),
-            z: number(found.z),
-            variance: number(found.variance),
-            variance_ratio: number(found.variance_ratio),
-            kurtosis: number(found.kurtosis),
+            verdict: computed.verdict.into(),
+            draws: computed.draws,
+            truth: computed.truth,
+            mean: number(computed.mean),
+            standard_error: number(computed.standard_error),
+            z: number(computed.z),
+            variance: number(computed.variance),
+            variance_ratio: number(computed.variance_ratio),
+            kurtosis: number(computed.kurtosis),
         }
     }
 }
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn tf_check_numbers(
     unsafe {
         status(query(check, |check| {
             let outcome = check.judged()?;
-            let found = outcome.values.get(value).ok_or_else(|| {
+            let computed = outcome.values.get(value).ok_or_else(|| {
                 let (name, values) = (&outcome.name, outcome.values.len());
                 let message = format!(
                     "check `{name}`: there is no value {value}; the last one is value {}",
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn tf_check_numbers(
                 );
                 Error::new(Status::Index, message)
             })?;
-            write("the place of the numbers", numbers, found.into())
+            write("the place of the numbers", numbers, computed.into())
         }))
     }
 }
@@ -155,11 +155,11 @@ fn status(result: Result<(), Status>) -> Status {
 /// Returns a text of a check after judging it; without a verdict the text is the error's message.
 unsafe fn words(check: *mut Check, words: impl Fn(&Session) -> *const c_char) -> *const c_char {
     // SAFETY: rules for checks.
-    let found = unsafe {
+    let computed = unsafe {
         query(check, |check| {
             let _ = check.judged();
             Ok(words(check))
         })
     };
-    found.unwrap_or_else(|_| tf_last_error())
+    computed.unwrap_or_else(|_| tf_last_error())
 }

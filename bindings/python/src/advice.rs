@@ -45,7 +45,7 @@ impl Sought {
 pub fn advise(py: Python<'_>, case: CaseRequest, sought: &Bound<'_, PyAny>) -> PyResult<String> {
     let sought: Sought = sought.extract()?;
     work(py, sought.threads, None, move |_| {
-        let found = advised(&case.spec()?, &sought.request()?)?;
-        columns(&found).map_err(|error| Failure::Wrong(error.to_string()))
+        let result = advised(&case.spec()?, &sought.request()?)?;
+        columns(&result).map_err(|error| Failure::Wrong(error.to_string()))
     })
 }

@@ -62,14 +62,14 @@ impl RunRequest {
 pub fn predict(
     py: Python<'_>,
     cases: CaseRequest,
-    wanted: &Bound<'_, PyAny>,
+    expected: &Bound<'_, PyAny>,
     optimum: bool,
 ) -> PyResult<String> {
-    let wanted: RunRequest = wanted.extract()?;
+    let expected: RunRequest = expected.extract()?;
     let predicted = if optimum { build::predicted_with_optima } else { build::predicted };
-    work(py, wanted.threads, None, move |_| {
+    work(py, expected.threads, None, move |_| {
         let cases = cases.read()?;
-        columns(&predicted(&wanted.plan(&cases)?))
+        columns(&predicted(&expected.plan(&cases)?))
     })
 }
 
@@ -82,13 +82,13 @@ pub fn predict(
 pub fn run(
     py: Python<'_>,
     cases: CaseRequest,
-    wanted: &Bound<'_, PyAny>,
+    expected: &Bound<'_, PyAny>,
     tell: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let wanted: RunRequest = wanted.extract()?;
-    work(py, wanted.threads, tell, move |progress| {
+    let expected: RunRequest = expected.extract()?;
+    work(py, expected.threads, tell, move |progress| {
         let cases = cases.read()?;
-        let plan = wanted.plan(&cases)?;
+        let plan = expected.plan(&cases)?;
         columns(&drawn(&plan, progress))
     })
 }

@@ -29,7 +29,7 @@ impl Check for Always {
     }
 
     fn join(&self, block: &mut [f64], next: &[f64]) {
-        block.iter_mut().zip(next).for_each(|(most, &other)| *most = larger(*most, other));
+        block.iter_mut().zip(next).for_each(|(maximum, &other)| *maximum = larger(*maximum, other));
     }
 
     fn merge(&self, total: &mut Total, block: &[f64], number: u64) {

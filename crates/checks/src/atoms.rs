@@ -50,7 +50,7 @@ impl AtomValues {
     fn find(&self, x: f64) -> Option<usize> {
         let after = self.value.partition_point(|&value| value < x);
         let ends = [self.value.first(), self.value.last()];
-        let largest = ends.into_iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let largest = ends.into_iter().flatten().fold(0.0, |maximum: f64, x| maximum.max(x.abs()));
         let near = |i: &usize| {
             let value = self.value[*i];
             (x - value).abs() <= self.same * value.abs() + ROUNDING * largest

@@ -33,7 +33,7 @@ pub struct Subject<'a> {
     /// Number of draws that are planned.
     pub draws: u64,
     /// Largest number of draws that the plan may demand.
-    pub most: u64,
+    pub maximum: u64,
     /// Number of the first draws that p-values see, whatever the gate decides.
     pub fixed: u64,
     /// Smallest differences that must be detected, as far as the case gives them.

@@ -45,8 +45,8 @@ pub fn is_known(prediction: &Prediction) -> bool {
 }
 
 fn classes(prediction: &Prediction) -> Option<Classes> {
-    let law = prediction.lookups.as_ref().filter(|law| law.variance > 0.0)?;
-    (!law.pmf.is_empty()).then(|| Classes { probability: law.pmf.clone() })
+    let density = prediction.lookups.as_ref().filter(|density| density.variance > 0.0)?;
+    (!density.pmf.is_empty()).then(|| Classes { probability: density.pmf.clone() })
 }
 
 /// The check.
@@ -56,8 +56,9 @@ pub const CHECK: CheckKind =
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
     let classes = classes(subject.prediction);
-    let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
-    Question::distribution(CheckId::Counts, WHAT, classes.filter(|law| bins(law) >= 2))
+    let bins =
+        |density: &Classes| chi_square::testable_bins(&density.probability, subject.fixed as f64);
+    Question::distribution(CheckId::Counts, WHAT, classes.filter(|density| bins(density) >= 2))
 }
 
 /// Returns the tests of foreign draws.

@@ -41,9 +41,9 @@ impl DistributionTest for ByGate {
 
     fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let arguments = self.0.planned.design.arguments();
-        let mut found = GateSums::default();
-        draws.observe(&self.0.observe, &mut Vec::new(), |y, _| found.absorb(y, &arguments));
-        sums.iter_mut().zip(found.totals()).for_each(|(sum, x)| *sum += x);
+        let mut finding = GateSums::default();
+        draws.observe(&self.0.observe, &mut Vec::new(), |y, _| finding.absorb(y, &arguments));
+        sums.iter_mut().zip(finding.totals()).for_each(|(sum, x)| *sum += x);
     }
 
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
@@ -59,15 +59,15 @@ fn of_foreign(foreign: &ForeignDraws) -> Vec<ForeignTest> {
     let subject = Subject {
         prediction,
         draws,
-        most: draws,
+        maximum: draws,
         fixed: draws,
         tolerance: Tolerance::default(),
         expect_biased: false,
         has_invariant: false,
         pilots: None,
     };
-    let asked = scalars(&subject).filter(|asked| asked.channel < request.values);
-    let tests = asked.filter_map(|CovarianceRequest { channel, what, scalar }| {
+    let requested = scalars(&subject).filter(|requested| requested.channel < request.values);
+    let tests = requested.filter_map(|CovarianceRequest { channel, what, scalar }| {
         let what = format!("{what} of {}", prediction.channels[channel].name).into();
         let test = Ok(Box::new(ByGate(AssertUnwindSafe(scalar?))) as Box<dyn DistributionTest>);
         Some(ForeignTest { what, test, between: ANY })

@@ -44,13 +44,13 @@ impl Increments {
     /// Joins an increment to the next if rounding in `draws` draws could spoil it: a step counts if `Δg > n (10³ δ)²`.
     /// `None` if there is no such step.
     fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<Self> {
-        let least = draws as f64 * (1e3 * rounding).powi(2);
+        let minimum = draws as f64 * (1e3 * rounding).powi(2);
         let scale = scale(prediction);
         let mut joined = Self { at: Vec::new(), scale: Vec::new(), clock: Vec::new() };
         let mut clock = 0.0;
         for (j, increment) in prediction.increments.iter().enumerate() {
             clock += increment.variance;
-            if clock > least {
+            if clock > minimum {
                 joined.at.push(j);
                 joined.scale.push(scale[j]);
                 joined.clock.push(std::mem::take(&mut clock));
@@ -98,7 +98,7 @@ impl DistributionTest for Increments {
 /// are too uncertain.
 fn needed(prediction: &Prediction) -> Option<f64> {
     let increments = &prediction.increments;
-    let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
+    let kurtosis = increments.iter().fold(0.0f64, |maximum, step| maximum.max(step.kurtosis));
     let tails = prediction.channels.iter().map(|channel| channel.tails.rare_event_size);
     let rare = tails.fold(0.0f64, f64::max);
     let is_sharp = !increments.is_empty() && increments.iter().all(|step| step.error <= SHARP);
@@ -108,10 +108,10 @@ fn needed(prediction: &Prediction) -> Option<f64> {
 /// Returns the tests of foreign draws.
 fn of_foreign(draws: &ForeignDraws) -> Vec<ForeignTest> {
     let Some(prediction) = draws.in_full() else { return Vec::new() };
-    let Some(least) = needed(prediction) else { return Vec::new() };
-    let most = draws.request.length.unwrap_or(FOREIGN);
-    let steps = Increments::of(prediction, most, draws.error_of_product().max(rounding(0.0)));
-    ForeignTest::of("the distribution along the curve", steps, [least, f64::INFINITY])
+    let Some(minimum) = needed(prediction) else { return Vec::new() };
+    let maximum = draws.request.length.unwrap_or(FOREIGN);
+    let steps = Increments::of(prediction, maximum, draws.error_of_product().max(rounding(0.0)));
+    ForeignTest::of("the distribution along the curve", steps, [minimum, f64::INFINITY])
 }
 
 /// Returns `1/T_j`.
@@ -129,7 +129,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     if increments.is_empty() {
         return Vec::new();
     }
-    let is_long = needed(subject.prediction).is_some_and(|least| subject.fixed as f64 >= least);
+    let is_long = needed(subject.prediction).is_some_and(|minimum| subject.fixed as f64 >= minimum);
     if is_long {
         let rounding = rounding_of(subject);
         let increments = Increments::of(subject.prediction, subject.fixed, rounding);

@@ -24,7 +24,7 @@ struct BlockMeans {
     mean: f64,
     scale: f64,
     /// Smallest number of draws for which the mean of a block is nearly normal.
-    least: f64,
+    minimum: f64,
 }
 
 impl DistributionTest for BlockMeans {
@@ -42,7 +42,7 @@ impl DistributionTest for BlockMeans {
     }
 
     fn close(&self, draws: usize, sums: &mut [f64]) {
-        if draws as f64 >= self.least {
+        if draws as f64 >= self.minimum {
             sums[0] = sums[0] * sums[0] / draws as f64;
             sums[1] = 1.0;
         } else {
@@ -65,7 +65,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
     let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= MIN_BLOCKS;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
-    let means = BlockMeans { mean, scale, least: needed };
+    let means = BlockMeans { mean, scale, minimum: needed };
     Question::distribution(
         CheckId::Dispersion,
         "the spread of the blocks' means",

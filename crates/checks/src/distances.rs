@@ -214,13 +214,13 @@ pub(super) fn unrounded(draws: &ForeignDraws) -> [f64; 2] {
     };
     let (classes, rounding) = ((bins.len() + 1) as f64, draws.error_of_position());
     let width = |k: usize| bins.get(k + 1).map_or(f64::INFINITY, |next| next - bins[k]);
-    let most = |k: usize| {
+    let maximum = |k: usize| {
         let below = (k + 1) as f64 / classes;
         let narrow = width(k).min(k.checked_sub(1).map_or(f64::INFINITY, width));
         let moved = rounding * (from.abs() + bins[k]) / (narrow * classes);
         HARMLESS * HARMLESS * below * (1.0 - below) / (moved * moved)
     };
-    [0.0, (0..bins.len()).map(most).fold(f64::INFINITY, f64::min)]
+    [0.0, (0..bins.len()).map(maximum).fold(f64::INFINITY, f64::min)]
 }
 
 #[cfg(test)]

@@ -70,13 +70,13 @@ fn p_value(inspected: &Inspected) -> f64 {
         let words = (inspected.streams)(block).words();
         words.map(|word| 12f64.sqrt() * (word as f64 / 2f64.powi(64) - 0.5)).take(NUMBERS).collect()
     };
-    let mut least: f64 = 1.0;
+    let mut minimum: f64 = 1.0;
     let mut before = numbers(0);
     for block in 1..blocks {
         let here = numbers(block);
         let lagged = correlation::lagged(&before, &here, -LAG..=LAG);
-        least = lagged.map_or(least, |lagged| least.min(lagged.p_value));
+        minimum = lagged.map_or(minimum, |lagged| minimum.min(lagged.p_value));
         before = here;
     }
-    (least * (blocks - 1) as f64).min(1.0)
+    (minimum * (blocks - 1) as f64).min(1.0)
 }

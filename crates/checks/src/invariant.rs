@@ -18,12 +18,12 @@ const LANES: usize = 8;
 
 fn largest(draws: &DrawBuffer) -> f64 {
     // Eight at a time: their divisions and comparisons are independent.
-    let (mut most, mut sum) = ([0.0; LANES], [0.0; LANES]);
+    let (mut maximum, mut sum) = ([0.0; LANES], [0.0; LANES]);
     let mut add = |defects: &[f64], lookups: &[u32]| {
-        let lanes = most.iter_mut().zip(&mut sum);
-        for ((&defect, &lookups), (most, sum)) in defects.iter().zip(lookups).zip(lanes) {
+        let lanes = maximum.iter_mut().zip(&mut sum);
+        for ((&defect, &lookups), (maximum, sum)) in defects.iter().zip(lookups).zip(lanes) {
             let y = defect / (1.0 + f64::from(lookups));
-            *most = if y > *most { y } else { *most };
+            *maximum = if y > *maximum { y } else { *maximum };
             *sum += y;
         }
     };
@@ -35,7 +35,7 @@ fn largest(draws: &DrawBuffer) -> f64 {
     add(last_defects, last_lookups);
     // Defects are not negative: their sum is NaN only if one of them is.
     let sum: f64 = sum.iter().sum();
-    if sum.is_nan() { sum } else { most.into_iter().fold(0.0, f64::max) }
+    if sum.is_nan() { sum } else { maximum.into_iter().fold(0.0, f64::max) }
 }
 
 /// The check.

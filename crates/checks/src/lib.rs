@@ -131,12 +131,12 @@ const _: () = {
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let kinds = CATALOGUE.values.iter();
     let asking = kinds.filter(|kind| kind.of_biased || !subject.expect_biased);
-    let asked = asking.flat_map(|kind| {
+    let requested = asking.flat_map(|kind| {
         let expects_bias = subject.expect_biased && kind.id == CheckId::Mean;
         let questions = (kind.questions)(subject).into_iter();
         questions.map(move |question| Question { expects_bias, ..question })
     });
-    asked.collect()
+    requested.collect()
 }
 
 /// Returns the tests of foreign draws, in the order of the catalogue.

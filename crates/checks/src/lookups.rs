@@ -22,13 +22,14 @@ pub const CHECK: CheckKind = CheckKind::new(CheckId::Lookups, questions).of_bias
 
 /// Returns the questions of this check.
 fn questions(subject: &Subject) -> Vec<Question> {
-    let law = subject.prediction.lookups.as_ref().filter(|law| law.is_sharp());
-    let Some(law) = law else { return Vec::new() };
-    let mean = law.mean;
+    let distribution =
+        subject.prediction.lookups.as_ref().filter(|distribution| distribution.is_sharp());
+    let Some(distribution) = distribution else { return Vec::new() };
+    let mean = distribution.mean;
     let what = "the number of lookups";
-    let question = if law.variance > 0.0 {
-        let error = CountDistribution::ERROR.max(law.error);
-        let ground = variance(law.variance / (mean * mean), error);
+    let question = if distribution.variance > 0.0 {
+        let error = CountDistribution::ERROR.max(distribution.error);
+        let ground = variance(distribution.variance / (mean * mean), error);
         let lookups = Quantity::lookups(ground, error).within(subject.tolerance.lookups);
         let observe = move |counts: &[u32], y: &mut Vec<f64>| {
             let scale = 1.0 / mean;
@@ -43,7 +44,7 @@ fn questions(subject: &Subject) -> Vec<Question> {
     } else {
         let largest = move |draws: &DrawBuffer| {
             let counts = draws.lookups.iter();
-            counts.fold(0.0, |most: f64, &m| most.max((f64::from(m) - mean).abs()))
+            counts.fold(0.0, |maximum: f64, &m| maximum.max((f64::from(m) - mean).abs()))
         };
         // The predicted number may be rounded; a draw that differs by one is far beyond that.
         Question::whole(

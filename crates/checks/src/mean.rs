@@ -69,9 +69,9 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> 
     }
     if let Some(furthest) = deviation(channel).map(|d| FURTHEST * d).filter(|&far| far <= floor) {
         let largest = move |draws: &DrawBuffer| {
-            draws.values[index].iter().fold(0.0, |most: f64, x| {
+            draws.values[index].iter().fold(0.0, |maximum: f64, x| {
                 let y = ((x - truth) * scale).abs();
-                if y.is_nan() { y } else { most.max(y) }
+                if y.is_nan() { y } else { maximum.max(y) }
             })
         };
         return Box::new(Always::new(largest, floor + furthest));
@@ -93,7 +93,7 @@ fn answer(subject: &Subject, index: usize, channel: &Channel) -> Box<dyn Check> 
             let unit = moments.scale * scale;
             (moments.relative[0] * unit * unit, moments.error)
         }
-        (None, Some(most)) => (most * scale * scale, 0.0),
+        (None, Some(maximum)) => (maximum * scale * scale, 0.0),
         (None, None) => return untestable("theory has no variance for it".into()),
     };
     if !known.is_finite() {

@@ -143,13 +143,13 @@ impl DistributionTest for ForeignTies {
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
-        self.count(sums).map(|(found, expected, _)| ties::p_value(found, expected))
+        self.count(sums).map(|(finding, expected, _)| ties::p_value(finding, expected))
     }
 
     fn details(&self, sums: &[f64], _: f64) -> String {
-        let Some((found, expected, all)) = self.count(sums) else { return String::new() };
+        let Some((finding, expected, all)) = self.count(sums) else { return String::new() };
         format!(
-            "{found} of {all} flights have the length of an earlier one, {expected:.0} at most are expected of single \
+            "{finding} of {all} flights have the length of an earlier one, {expected:.0} at most are expected of single \
              precision"
         )
     }

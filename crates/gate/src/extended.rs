@@ -112,8 +112,8 @@ pub fn serialize<S: Serializer, T: Numbers>(numbers: &T, to: S) -> Result<S::Ok,
 ///
 /// Data of another type.
 pub fn deserialize<'de, D: Deserializer<'de>, T: Numbers>(from: D) -> Result<T, D::Error> {
-    let wrong = |found: String| {
-        D::Error::invalid_value(Unexpected::Str(&found), &"numbers, `inf`, `-inf` or `nan`")
+    let wrong = |result: String| {
+        D::Error::invalid_value(Unexpected::Str(&result), &"numbers, `inf`, `-inf` or `nan`")
     };
     T::read(T::Stored::deserialize(from)?).map_err(wrong)
 }

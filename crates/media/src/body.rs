@@ -86,10 +86,10 @@ impl Body {
                 is_extinction(settings, "volume", Self::crossed(settings, field?, ray?)?)
             }
             (both, _) => {
-                let found = if both { "both `medium` and `volume`" } else { "no field is given" };
+                let actual = if both { "both `medium` and `volume`" } else { "no field is given" };
                 let help = "give `medium.NAME = { … }` with `span = [from, to]`, or \
                             `volume.NAME = { … }` with `ray = { origin, direction, length }`";
-                settings.fault_at(settings.span.clone(), "", found, help);
+                settings.fault_at(settings.span.clone(), "", actual, help);
                 None
             }
         }
@@ -132,10 +132,10 @@ impl Body {
             not_too_many(settings, "volume", pieces)?;
             return Some(Self::Volume { name, volume, ray });
         }
-        let found = format!(
+        let actual = format!(
             "the ray reaches {farthest:.1e} cells from the field's origin, and 2^31 is most"
         );
-        settings.fault("volume", found, "bring the ray's origin nearer, or make the cells larger");
+        settings.fault("volume", actual, "bring the ray's origin nearer, or make the cells larger");
         None
     }
 
@@ -251,8 +251,8 @@ fn is_extinction(settings: &Settings, key: &'static str, body: Body) -> Option<B
     let is_own = CATALOGUE.get(body.name()).is_none();
     let medium = body.medium();
     if is_own && medium.optical_depth(medium.support()).value.is_nan() {
-        let found = format!("σ_t of `{}` is negative or not finite on the ray", body.name());
-        settings.fault(key, found, "it takes a field with 0 ≤ σ_t < ∞");
+        let actual = format!("σ_t of `{}` is negative or not finite on the ray", body.name());
+        settings.fault(key, actual, "it takes a field with 0 ≤ σ_t < ∞");
         return None;
     }
     Some(body)
@@ -262,8 +262,8 @@ fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<(
     if pieces <= MAX_PIECES {
         return Some(());
     }
-    let found = format!("about {pieces:.1e} pieces along the ray, more than {MAX_PIECES:.0e}");
-    settings.fault(key, found, "make it shorter, or its features larger");
+    let actual = format!("about {pieces:.1e} pieces along the ray, more than {MAX_PIECES:.0e}");
+    settings.fault(key, actual, "make it shorter, or its features larger");
     None
 }
 

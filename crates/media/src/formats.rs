@@ -65,8 +65,8 @@ impl Format {
 
     /// Lists the endings of some formats, as in `.vdb, .nvdb and .pbrt`.
     pub fn list(is_wanted: impl Fn(Self) -> bool) -> String {
-        let wanted = Self::ALL.iter().copied().filter(|format| is_wanted(*format));
-        let endings: Vec<&str> = wanted.flat_map(Self::endings).copied().collect();
+        let expected = Self::ALL.iter().copied().filter(|format| is_wanted(*format));
+        let endings: Vec<&str> = expected.flat_map(Self::endings).copied().collect();
         match endings.split_last() {
             Some((last, [])) => (*last).to_owned(),
             Some((last, others)) => format!("{} and {last}", others.join(", ")),

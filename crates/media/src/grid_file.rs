@@ -193,10 +193,10 @@ fn read_npy(mut bytes: &[u8], axes: Axes) -> Result<Samples, Unreadable> {
     let Some(number) = NumberType::named(&header.kind) else {
         return wrong(format!("the samples have the type {}", header.kind), ARRAY);
     };
-    let wanted = number.width() * shape.iter().product::<usize>();
-    if bytes.len() != wanted {
-        let than = if bytes.len() < wanted { "shorter" } else { "longer" };
-        let message = format!("the file is {than} than its {wanted} bytes of samples");
+    let expected = number.width() * shape.iter().product::<usize>();
+    if bytes.len() != expected {
+        let than = if bytes.len() < expected { "shorter" } else { "longer" };
+        let message = format!("the file is {than} than its {expected} bytes of samples");
         return wrong(
             message,
             "write the file anew, with nothing but the samples after the header",

@@ -35,9 +35,9 @@ pub(super) fn read_samples(settings: &Settings) -> Option<Samples> {
             read_random(&settings.table("random")?)
         }
         (both, _) => {
-            let found = if both { "both `file` and `random`" } else { "no samples are given" };
+            let actual = if both { "both `file` and `random`" } else { "no samples are given" };
             let help = "give `file = \"x.vdb\"` or `random = { size = [nx, ny, nz], seed = n }`";
-            settings.fault_at(settings.span.clone(), "", found, help);
+            settings.fault_at(settings.span.clone(), "", actual, help);
             None
         }
     }
@@ -155,11 +155,11 @@ pub(super) fn own_bounds(settings: &Settings, samples: &Samples) -> Option<Aabb>
     };
     let own = samples.bounds.filter(proper);
     if own.is_none() {
-        let (key, found) = match samples.bounds {
+        let (key, actual) = match samples.bounds {
             Some(_) => ("file", "the corners in the file do not make a box"),
             None => ("bounds", "the grid has no box"),
         };
-        settings.fault(key, found, "give `bounds.box = { low = [x, y, z], high = [x, y, z] }`");
+        settings.fault(key, actual, "give `bounds.box = { low = [x, y, z], high = [x, y, z] }`");
     }
     own
 }

@@ -162,9 +162,9 @@ fn turned(transform: &Transform, [low, high]: [[i64; 3]; 2]) -> Result<(Aabb, Tu
     };
     let (voxel, shift) = (transform.voxel(), transform.shift);
     let is_kept = |j: usize| {
-        let most = bounds.low.0[j].abs().max(bounds.high.0[j].abs()).max(shift[j].abs());
-        most.is_finite()
-            && voxel.iter().all(|edge| edge.is_normal() && most * f64::EPSILON < 1e-9 * edge)
+        let maximum = bounds.low.0[j].abs().max(bounds.high.0[j].abs()).max(shift[j].abs());
+        maximum.is_finite()
+            && voxel.iter().all(|edge| edge.is_normal() && maximum * f64::EPSILON < 1e-9 * edge)
     };
     if !(0..3).all(is_kept) {
         return wrong(

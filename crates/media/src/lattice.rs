@@ -201,7 +201,7 @@ impl Track {
     pub fn max_coordinate(&self, inside: Span) -> f64 {
         let t = inside.from.abs().max(inside.to.abs());
         let reach = self.start.iter().zip(self.slope).map(|(a, b)| a.abs() + b.abs() * t);
-        reach.fold(0.0, |most, x| if x.is_nan() || x > most { x } else { most })
+        reach.fold(0.0, |maximum, x| if x.is_nan() || x > maximum { x } else { maximum })
     }
 }
 

@@ -62,9 +62,9 @@ impl Medium {
 
     /// `σ_t` at many distances inside the support.
     pub fn extinctions(&self, at: &[f64]) -> Vec<f64> {
-        let mut found = at.to_vec();
-        self.lookups(Level::new()).replace(&mut found);
-        found
+        let mut actual = at.to_vec();
+        self.lookups(Level::new()).replace(&mut actual);
+        actual
     }
 
     /// `σ_t` inside the support, for kernels on the hardware of a level.

@@ -104,10 +104,10 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
         change(here) > share.max(16.0 * f64::EPSILON * here.whole[0])
     };
     let on = |part: Span| panel(&f, part);
-    let found =
+    let actual =
         halve(&mut Span::between(&cuts), LIMITS, &on, &|here, scale| !is_rough(here, scale));
     let (mut value, mut error) = (Sum::default(), Sum::default());
-    for here in &found {
+    for here in &actual {
         value.add(here.value()[0]);
         error.add(change(here));
     }

@@ -155,8 +155,8 @@ fn read_volume(settings: &Settings) -> Option<Radial> {
     let radius = settings.number("radius", Domain::Positive);
     let listed = settings.numbers("coefficients", Domain::Finite, 1)?;
     if listed.len() > MAX_COEFFICIENTS {
-        let found = format!("{} coefficients", listed.len());
-        settings.fault("coefficients", found, "there are four at most");
+        let actual = format!("{} coefficients", listed.len());
+        settings.fault("coefficients", actual, "there are four at most");
         return None;
     }
     let mut coefficients = [0.0; MAX_COEFFICIENTS];
@@ -168,9 +168,9 @@ fn read_volume(settings: &Settings) -> Option<Radial> {
     let size: f64 = coefficients.iter().map(|x| x.abs()).sum();
     // The rounding error at a double root is no negative extinction.
     if value(lowest) < -1e-14 * size {
-        let found =
+        let actual =
             format!("σ_t is {:.4} at r = {:.4}", value(lowest), field.radius * lowest.sqrt());
-        settings.fault("coefficients", found, "an extinction is nowhere negative");
+        settings.fault("coefficients", actual, "an extinction is nowhere negative");
         return None;
     }
     Some(field)

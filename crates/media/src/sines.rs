@@ -239,8 +239,8 @@ impl Sines {
         let vectors = match (settings.has("vectors"), settings.has("frequencies")) {
             (true, false) => settings.triples("vectors"),
             (both, _) => {
-                let found = if both { "both" } else { "neither" };
-                let message = format!("{found} of `vectors` and `frequencies`");
+                let actual = if both { "both" } else { "neither" };
+                let message = format!("{actual} of `vectors` and `frequencies`");
                 let help = "give `vectors` for waves in space, or `frequencies` for layers across an `axis`";
                 settings.fault("vectors", message, help);
                 None

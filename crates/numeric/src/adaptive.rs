@@ -80,24 +80,24 @@ mod tests {
     fn panels_are_short_where_the_integrand_is_steep() {
         let rule = GaussLegendre::new(8);
         let limits = Limits { halvings: 60, panels: 1000 };
-        let found = halve(
+        let result = halve(
             &mut Span::between(&[0.0, 0.5, 1.0]),
             limits,
             &|span| [rule.integrate(span.from, span.to, f64::sqrt)],
             &|here, [scale]| here.change()[0].abs() <= 1e-15 * scale,
         );
-        let value: f64 = found.iter().map(|here| here.value()[0]).sum();
+        let value: f64 = result.iter().map(|here| here.value()[0]).sum();
         assert!((value - 2.0 / 3.0).abs() < 1e-14, "{value}");
-        assert!(found.windows(2).all(|pair| pair[0].span.to == pair[1].span.from));
-        assert!(found[0].span.length() < 1e-6 && found[found.len() - 1].span.length() > 0.1);
+        assert!(result.windows(2).all(|pair| pair[0].span.to == pair[1].span.from));
+        assert!(result[0].span.length() < 1e-6 && result[result.len() - 1].span.length() > 0.1);
     }
 
     #[test]
     fn a_rule_that_is_never_satisfied_ends_at_the_limit() {
         for limits in [Limits { halvings: 3, panels: 100 }, Limits { halvings: 60, panels: 8 }] {
-            let found = halve(&mut Span::between(&[0.0, 1.0]), limits, &|_| [1.0], &|_, _| false);
-            assert_eq!(found.len(), 8);
-            assert!(found.iter().all(|here| here.span.length() == 0.125));
+            let result = halve(&mut Span::between(&[0.0, 1.0]), limits, &|_| [1.0], &|_, _| false);
+            assert_eq!(result.len(), 8);
+            assert!(result.iter().all(|here| here.span.length() == 0.125));
         }
     }
 }

@@ -79,9 +79,9 @@ pub fn percent(share: f64) -> String {
 }
 
 /// A range of shares in percent.
-pub fn range([least, most]: [f64; 2]) -> String {
-    let [least, most] = [least, most].map(percent);
-    if least == most { least } else { format!("{least} … {most}") }
+pub fn range([minimum, maximum]: [f64; 2]) -> String {
+    let [minimum, maximum] = [minimum, maximum].map(percent);
+    if minimum == maximum { minimum } else { format!("{minimum} … {maximum}") }
 }
 
 fn trimmed(text: &str) -> String {

@@ -215,9 +215,9 @@ impl DoubleDouble {
         [sine, Self::ONE - versed]
     }
 
-    /// `|found − self|/|self|`; the absolute difference where this is 0.
-    pub fn relative_error(self, found: f64) -> f64 {
-        let off = (Self::from(found) - self).abs().value();
+    /// `|result − self|/|self|`; the absolute difference where this is 0.
+    pub fn relative_error(self, result: f64) -> f64 {
+        let off = (Self::from(result) - self).abs().value();
         if self.high == 0.0 { off } else { off / self.high.abs() }
     }
 }
@@ -326,9 +326,9 @@ impl std::iter::Sum for DoubleDouble {
 mod tests {
     use super::*;
 
-    fn near(found: DoubleDouble, exact: DoubleDouble, tolerance: f64) {
-        let off = (found - exact).abs().value();
-        assert!(off <= tolerance * exact.high.abs().max(1e-300), "{found:?} {exact:?}: {off:e}");
+    fn near(result: DoubleDouble, exact: DoubleDouble, tolerance: f64) {
+        let off = (result - exact).abs().value();
+        assert!(off <= tolerance * exact.high.abs().max(1e-300), "{result:?} {exact:?}: {off:e}");
     }
 
     #[test]

@@ -160,21 +160,21 @@ const STEPS: usize = 32;
 /// ```
 fn powers_of_decay<const N: usize>(x: f64) -> [f64; N] {
     let end = (-x).exp();
-    let mut found = [x.mean_decay(); N];
+    let mut result = [x.mean_decay(); N];
     if x > STEEP {
         for k in 1..N {
-            found[k] = (k as f64 * found[k - 1] - end) / x;
+            result[k] = (k as f64 * result[k - 1] - end) / x;
         }
-        return found;
+        return result;
     }
     let mut integral = end / (N + STEPS) as f64;
     for k in (1..N + STEPS).rev() {
         if k < N {
-            found[k] = integral;
+            result[k] = integral;
         }
         integral = (x * integral + end) / k as f64;
     }
-    found
+    result
 }
 
 impl<const N: usize> Jet<N> {
@@ -267,11 +267,11 @@ mod tests {
     #[test]
     fn logarithms_and_quotients_undo_exponentials_and_products() {
         let (a, b) = (Jet([0.7, -1.2, 0.4, 2.5]), Jet([1.9, 0.3, -0.8, 0.1]));
-        for (found, exact) in
+        for (result, exact) in
             [(a.exp().ln(), a), (a * b / b, a), (a.power_of(2.0).ln(), a * 2.0f64.ln())]
         {
-            for (found, exact) in found.0.iter().zip(exact.0) {
-                assert!((found - exact).abs() < 1e-14, "{found} {exact}");
+            for (result, exact) in result.0.iter().zip(exact.0) {
+                assert!((result - exact).abs() < 1e-14, "{result} {exact}");
             }
         }
         assert_eq!([3.0.power_of(-2.0), 0.5.power_of(0.0)], [-8.0, 0.0]);
@@ -284,22 +284,22 @@ mod tests {
     #[test]
     fn functions_have_the_series_of_their_derivatives() {
         let exponential = Jet([0.0, 2.0, 0.0, 0.0, 0.0]).exp();
-        for (found, exact) in exponential.0.iter().zip([1.0, 2.0, 2.0, 4.0 / 3.0, 2.0 / 3.0]) {
-            assert!((found - exact).abs() < 1e-15);
+        for (result, exact) in exponential.0.iter().zip([1.0, 2.0, 2.0, 4.0 / 3.0, 2.0 / 3.0]) {
+            assert!((result - exact).abs() < 1e-15);
         }
         let rule = crate::quadrature::GaussLegendre::new(48);
         for x in [0.0, 1e-10, 1e-3, 0.7, 1.9, 2.1, 9.0] {
-            let found = Jet([x, 1.0, 0.0, 0.0]).mean_decay();
+            let result = Jet([x, 1.0, 0.0, 0.0]).mean_decay();
             for (k, factor) in [1.0, -1.0, 0.5, -1.0 / 6.0].into_iter().enumerate() {
                 let power = |t: f64| t.powi(i32::try_from(k).expect("few")) * (-x * t).exp();
                 let exact = factor * rule.integrate(0.0, 1.0, power);
                 assert!(
-                    (found.0[k] / exact - 1.0).abs() < 1e-13,
+                    (result.0[k] / exact - 1.0).abs() < 1e-13,
                     "{x}, {k}: {} {exact}",
-                    found.0[k]
+                    result.0[k]
                 );
             }
-            assert!((found.0[0] / x.mean_decay() - 1.0).abs() < 1e-15);
+            assert!((result.0[0] / x.mean_decay() - 1.0).abs() < 1e-15);
         }
     }
 

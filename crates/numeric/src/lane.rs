@@ -158,10 +158,10 @@ pub trait Lane:
 
     /// One of a list. What an index finds lies in memory, and the whole list with it: this finds it among registers.
     #[inline(always)]
-    fn one_of<const N: usize>(list: &[Self; N], wanted: usize) -> Self {
+    fn one_of<const N: usize>(list: &[Self; N], expected: usize) -> Self {
         let mut chosen = list[0];
         for (number, &entry) in list.iter().enumerate() {
-            chosen = if number == wanted { entry } else { chosen };
+            chosen = if number == expected { entry } else { chosen };
         }
         chosen
     }
@@ -224,8 +224,8 @@ pub trait Lane:
     /// The last 32 bits of an integer, `|self| < 2^51`, in both words.
     fn words(self) -> Self::Words;
 
-    /// `yes` where those of an element's 64 bits that are in `bits` are as in `wanted`, else `no`.
-    fn where_bits(words: Self::Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self;
+    /// `yes` where those of an element's 64 bits that are in `bits` are as in `expected`, else `no`.
+    fn where_bits(words: Self::Words, bits: u64, expected: u64, yes: Self, no: Self) -> Self;
 
     /// `self`, negated where the given one of an element's 64 bits is set.
     #[must_use]
@@ -366,9 +366,9 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+    fn where_bits(words: u64, bits: u64, expected: u64, yes: Self, no: Self) -> Self {
         // Bits, not a branch: what a hash decides cannot be foreseen.
-        let mask = u64::from(words & bits == wanted).wrapping_neg();
+        let mask = u64::from(words & bits == expected).wrapping_neg();
         let (yes, no) = (yes.to_bits(), no.to_bits());
         Self::from_bits(no ^ ((no ^ yes) & mask))
     }

@@ -143,8 +143,8 @@ impl<S: Scalar> Matrix<S> {
 
     /// `(1 − A)⁻¹ b`, see [`Self::series_times`].
     pub fn series(&self, b: &[S]) -> Option<Vec<S>> {
-        let found = self.series_times(&Self::new(b.len(), 1, |row, _| b[row]))?;
-        Some((0..found.rows()).map(|row| found.at(row, 0)).collect())
+        let result = self.series_times(&Self::new(b.len(), 1, |row, _| b[row]))?;
+        Some((0..result.rows()).map(|row| result.at(row, 0)).collect())
     }
 
     /// The X with `(1 − A) X = B`, of A the square and of B as many rows; `None` unless every pivot of the
@@ -315,8 +315,8 @@ mod tests {
         for i in 0..9 {
             for j in 0..10 {
                 for k in 0..4 {
-                    let found = x.at(i, j).term(k) - product.at(i, j).term(k);
-                    assert!((found - b.at(i, j).term(k)).abs() < 1e-12);
+                    let result = x.at(i, j).term(k) - product.at(i, j).term(k);
+                    assert!((result - b.at(i, j).term(k)).abs() < 1e-12);
                 }
             }
         }

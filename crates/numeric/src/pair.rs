@@ -194,9 +194,9 @@ impl<L: Lane> Lane for Pair<L> {
     }
 
     #[inline(always)]
-    fn where_bits(words: Pair<L::Words>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-        let first = L::where_bits(words.0, bits, wanted, yes.0, no.0);
-        Self(first, L::where_bits(words.1, bits, wanted, yes.1, no.1))
+    fn where_bits(words: Pair<L::Words>, bits: u64, expected: u64, yes: Self, no: Self) -> Self {
+        let first = L::where_bits(words.0, bits, expected, yes.0, no.0);
+        Self(first, L::where_bits(words.1, bits, expected, yes.1, no.1))
     }
 
     #[inline(always)]

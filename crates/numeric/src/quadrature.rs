@@ -104,21 +104,21 @@ impl GaussLegendre {
             sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * x);
         };
         let mut beyond = vec![0.0; values.first().map_or(0, Vec::len)];
-        let mut found = vec![Vec::new(); values.len()];
+        let mut result = vec![Vec::new(); values.len()];
         let nodes = self.nodes.len();
-        let panels = values.chunks(nodes).zip(found.chunks_mut(nodes)).zip(widths);
-        for ((values, found), width) in panels.rev() {
-            for (i, found) in found.iter_mut().enumerate() {
-                found.clone_from(&beyond);
+        let panels = values.chunks(nodes).zip(result.chunks_mut(nodes)).zip(widths);
+        for ((values, result), width) in panels.rev() {
+            for (i, result) in result.iter_mut().enumerate() {
+                result.clone_from(&beyond);
                 for (row, weight) in values.iter().zip(self.to_end(i)) {
-                    add(found, row, width * weight);
+                    add(result, row, width * weight);
                 }
             }
             for (row, weight) in values.iter().zip(&self.weights) {
                 add(&mut beyond, row, width * weight);
             }
         }
-        found
+        result
     }
 
     /// `∫_from^to f`.
@@ -192,8 +192,8 @@ mod tests {
             let rule = GaussLegendre::new(n);
             for x in [1e-9, 0.1, rule.nodes[2], 0.5, 0.77, 1.0 - 1e-9] {
                 let pairs = rule.weights_at(x).into_iter().zip(&rule.nodes);
-                let found: f64 = pairs.map(|(weight, node)| weight * node.powi(4)).sum();
-                assert!((found - x.powi(4)).abs() < 1e-14, "{n} nodes at {x}: {found}");
+                let result: f64 = pairs.map(|(weight, node)| weight * node.powi(4)).sum();
+                assert!((result - x.powi(4)).abs() < 1e-14, "{n} nodes at {x}: {result}");
             }
         }
     }
@@ -213,11 +213,11 @@ mod tests {
         let (rule, a, end) = (GaussLegendre::new(14), 0.7, 2.0);
         let losses: Vec<f64> = rule.nodes.iter().map(|x| a * x).collect();
         let f: Vec<f64> = rule.nodes.iter().map(|x| x.cos() * (a * x).exp()).collect();
-        let (found, begin) = rule.backward(&losses, a, &f, end);
+        let (result, begin) = rule.backward(&losses, a, &f, end);
         let exact = |s: f64| (a * s).exp() * (1f64.sin() - s.sin() + end * (-a).exp());
         assert!((begin - exact(0.0)).abs() < 1e-15);
-        for (found, &s) in found.iter().zip(&rule.nodes) {
-            assert!((found - exact(s)).abs() < 1e-14, "{s}");
+        for (result, &s) in result.iter().zip(&rule.nodes) {
+            assert!((result - exact(s)).abs() < 1e-14, "{s}");
         }
     }
 
@@ -227,9 +227,9 @@ mod tests {
         let nodes: Vec<f64> = Span::between(&ends).flat_map(|span| rule.nodes_on(span)).collect();
         let values: Vec<Vec<f64>> = nodes.iter().map(|t| vec![1.0, t.powi(3)]).collect();
         let widths: Vec<f64> = Span::between(&ends).map(Span::length).collect();
-        for (found, t) in rule.all_to_end(&widths, &values).iter().zip(nodes) {
-            assert!((found[0] - (2.0 - t)).abs() < 1e-14);
-            assert!((found[1] - (4.0 - 0.25 * t.powi(4))).abs() < 1e-14, "{t}");
+        for (result, t) in rule.all_to_end(&widths, &values).iter().zip(nodes) {
+            assert!((result[0] - (2.0 - t)).abs() < 1e-14);
+            assert!((result[1] - (4.0 - 0.25 * t.powi(4))).abs() < 1e-14, "{t}");
         }
     }
 }

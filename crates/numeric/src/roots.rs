@@ -179,32 +179,32 @@ mod tests {
 
     #[test]
     fn a_good_guess_takes_one_step() {
-        let mut asked = 0;
+        let mut requested = 0;
         let root = rising_from(
             1.414,
             [1.0, 2.0],
             |step, _| step.abs() < 1e-3,
             |x| {
-                asked += 1;
+                requested += 1;
                 (x * x - 2.0, 2.0 * x)
             },
         );
-        assert!(asked == 1 && (root - 2f64.sqrt()).abs() < 1e-7);
+        assert!(requested == 1 && (root - 2f64.sqrt()).abs() < 1e-7);
         // What the last step would leave the bracket for is its end.
         assert_eq!(rising_from(1.0, [0.0, 1.0], |_, _| true, |_| (-1.0, 1.0)), 1.0);
     }
 
     #[test]
     fn finds_the_least_value_in_few_steps_and_stays_off_cliffs() {
-        let mut asked = 0;
+        let mut requested = 0;
         let mut smooth = |x: f64| {
-            asked += 1;
+            requested += 1;
             x.exp() - 2.0 * x
         };
         let (x, value) = least([0.0, 0.5, 2.0], 0.5f64.exp() - 1.0, 1e-7, &mut smooth);
         let ln = 2f64.ln();
         assert!((x - ln).abs() < 1e-7 && (value - (2.0 - 2.0 * ln)).abs() < 1e-14, "{x} {value}");
-        assert!(asked <= 15, "{asked}");
+        assert!(requested <= 15, "{requested}");
         let mut cliff = |x: f64| if x < 1.0 { 0.0 } else { -1.0 / x };
         let (x, value) = least([0.0, 1.5, 3.0], -1.0 / 1.5, 1e-7, &mut cliff);
         assert!((1.0..1.0 + 1e-6).contains(&x) && value == cliff(x), "{x} {value}");

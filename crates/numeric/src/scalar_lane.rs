@@ -169,8 +169,8 @@ impl Lane for F32 {
     }
 
     #[inline(always)]
-    fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-        Self::of(f64::where_bits(words, bits, wanted, yes.double(), no.double()))
+    fn where_bits(words: u64, bits: u64, expected: u64, yes: Self, no: Self) -> Self {
+        Self::of(f64::where_bits(words, bits, expected, yes.double(), no.double()))
     }
 
     #[inline(always)]
@@ -209,8 +209,8 @@ mod tests {
     #[test]
     fn a_field_is_looked_up_in_single_precision() {
         use crate::elementary;
-        let found = elementary::exp(1.0f64);
-        assert!((f64::from(Lane::exp(F32(1.0)).0) - found).abs() < 1.2e-7);
-        assert_ne!(f64::from(Lane::exp(F32(1.0)).0), found);
+        let result = elementary::exp(1.0f64);
+        assert!((f64::from(Lane::exp(F32(1.0)).0) - result).abs() < 1.2e-7);
+        assert_ne!(f64::from(Lane::exp(F32(1.0)).0), result);
     }
 }

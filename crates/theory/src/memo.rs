@@ -7,13 +7,13 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 /// Answers by the key that they depend on.
 pub struct Memo<K, V> {
     answers: LazyLock<Mutex<HashMap<K, Arc<OnceLock<V>>>>>,
-    most: usize,
+    maximum: usize,
 }
 
 impl<K: Eq + Hash, V: Clone> Memo<K, V> {
-    /// An empty memo; when it holds `most` answers it drops them all.
-    pub const fn new(most: usize) -> Self {
-        Self { answers: LazyLock::new(Mutex::default), most }
+    /// An empty memo; when it holds `maximum` answers it drops them all.
+    pub const fn new(maximum: usize) -> Self {
+        Self { answers: LazyLock::new(Mutex::default), maximum }
     }
 
     /// Returns the answer; it is computed only once, also if several threads need it at the same time.
@@ -21,7 +21,7 @@ impl<K: Eq + Hash, V: Clone> Memo<K, V> {
         let slot = {
             // A panic in another thread leaves whole slots behind.
             let mut answers = self.answers.lock().unwrap_or_else(PoisonError::into_inner);
-            if answers.len() >= self.most {
+            if answers.len() >= self.maximum {
                 answers.clear();
             }
             answers.entry(key).or_default().clone()

@@ -31,8 +31,8 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let (mut items, mut errors) = (Vec::new(), Errors::default());
     for path in &arguments.files {
-        let found = inspected(path).with_context(|| format!("cannot inspect {}", path.display()));
-        items.extend(errors.keep(found));
+        let result = inspected(path).with_context(|| format!("cannot inspect {}", path.display()));
+        items.extend(errors.keep(result));
     }
     let text = match arguments.format {
         output::RowFormat::Table if console.quiet => String::new(),

@@ -208,8 +208,8 @@ pub fn array(mut bytes: &[u8]) -> Result<Vec<Item>, Unreadable> {
         item.notes.push("not read: its elements are no real numbers".to_owned());
         return Ok(vec![item]);
     };
-    let wanted = header.count().and_then(|count| count.checked_mul(number.width() as u64));
-    if wanted != Some(bytes.len() as u64) {
+    let expected = header.count().and_then(|count| count.checked_mul(number.width() as u64));
+    if expected != Some(bytes.len() as u64) {
         return wrong(
             format!(
                 "{} bytes follow the header, not those of the shape {shape} in {}",

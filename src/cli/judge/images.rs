@@ -101,7 +101,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if let (Some(tolerance), true) = (arguments.tolerance, arguments.truth != Some(0.0)) {
         numbers::check_share("--tolerance", tolerance)?;
     }
-    let wanted = ImageOptions {
+    let expected = ImageOptions {
         tile: images.tile.map(|tile| tile as usize),
         tolerance: arguments.tolerance,
         alpha: arguments.alpha,
@@ -110,7 +110,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if !images.against.is_empty() {
         name = format!("{name} against {}", self::name(&images.against));
     }
-    let judgement = match judged(arguments, &wanted) {
+    let judgement = match judged(arguments, &expected) {
         Ok(judgement) => judgement,
         Err(error) => {
             arguments.write_junit(&[], &[(name, format!("{error:#}"))])?;
@@ -136,7 +136,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
 }
 
 /// Reads and judges.
-fn judged(arguments: &super::Arguments, wanted: &ImageOptions) -> anyhow::Result<Judgement> {
+fn judged(arguments: &super::Arguments, expected: &ImageOptions) -> anyhow::Result<Judgement> {
     let images = &arguments.images;
     let judged_files = passes(&arguments.files)?;
     let (against, variance_stack) = (passes(&images.against)?, passes(&images.variance_stack)?);
@@ -156,7 +156,7 @@ fn judged(arguments: &super::Arguments, wanted: &ImageOptions) -> anyhow::Result
         let reference = read(&against)?;
         let terms =
             Terms { is_same_distribution: images.same_distribution, rounding: arguments.rounding };
-        return Ok(compare(&stack, &reference, terms, wanted)?);
+        return Ok(compare(&stack, &reference, terms, expected)?);
     }
     let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {
         (Some(value), _) => Ok(Some(Level::All(value))),
@@ -183,7 +183,7 @@ fn judged(arguments: &super::Arguments, wanted: &ImageOptions) -> anyhow::Result
         range: arguments.range,
         rounding: arguments.rounding,
     };
-    Ok(judge(&read(&judged_files)?, &claim, wanted)?)
+    Ok(judge(&read(&judged_files)?, &claim, expected)?)
 }
 
 /// Returns the files of a stack; those of a folder in the order of their names.
@@ -208,17 +208,17 @@ fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
             || format!("{}: cannot be listed; give a folder that can be read", folder.display()),
         )?;
     let is_image = |path: &PathBuf| Format::of(path).is_some_and(files::is_image);
-    let mut found: Vec<PathBuf> =
+    let mut finding: Vec<PathBuf> =
         entries.into_iter().map(|entry| entry.path()).filter(is_image).collect();
-    found.sort();
-    if found.is_empty() {
+    finding.sort();
+    if finding.is_empty() {
         bail!(
             "{}: a folder without images ({}); give one with a pass in each file",
             folder.display(),
             Format::list(files::is_image)
         );
     }
-    Ok(found)
+    Ok(finding)
 }
 
 /// Returns the name of the first of several files, with their number.

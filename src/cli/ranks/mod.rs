@@ -182,34 +182,35 @@ pub(super) fn main(
 ) -> anyhow::Result<u8> {
     // The default of a single process, one thread per processor, would start that many threads on each rank.
     let mut arguments = arguments.clone();
-    arguments.asked.selection.threads.get_or_insert(1);
+    arguments.requested.selection.threads.get_or_insert(1);
     if link.rank > 0 {
         serve(&link, &arguments, catalogue, console);
         return Ok(0);
     }
     let team = Team::new(link);
-    let asked = arguments.resumed()?;
-    if asked.is_share() {
+    let requested = arguments.resumed()?;
+    if requested.is_share() {
         bail!("a share is drawn by one process: leave out mpirun, or --shard");
     }
     if !console.quiet {
         // MPI ends rank 0 together with any other rank, without time for a message then.
-        let (ranks, again) = (team.size(), journal::resume(&asked.out()));
+        let (ranks, again) = (team.size(), journal::resume(&requested.out()));
         output::note(&format!(
             "{ranks} ranks draw; should one of them die, {again} under mpirun goes on"
         ));
     }
-    team.plan(&asked.words()?);
-    run::draw(&asked, Box::new(team), catalogue, console)
+    team.plan(&requested.words()?);
+    run::draw(&requested, Box::new(team), catalogue, console)
 }
 
 /// Draws the pieces that rank 0 deals. Errors go to rank 0, which reports them to the user.
 fn serve(link: &Link, arguments: &run::Arguments, catalogue: &Catalogue, console: &Console) {
     let Message::Plan(words) = link.receive().1 else { return };
-    let drawn = run::Arguments::of(&words).and_then(|asked| {
-        let selection = asked.asked.selection.clone().on_threads_of(&arguments.asked.selection);
+    let drawn = run::Arguments::of(&words).and_then(|requested| {
+        let selection =
+            requested.requested.selection.clone().on_threads_of(&arguments.requested.selection);
         let cases = selection.read(catalogue, console)?;
-        selection.with_plan(&cases, &asked.options()?, console, |plan| {
+        selection.with_plan(&cases, &requested.options()?, console, |plan| {
             draw(link, plan, Header::new(plan, &fingerprint()?, &words, None));
             Ok(())
         })
@@ -285,10 +286,10 @@ mod tests {
         let out = folder.join(ranks.to_string()).display().to_string();
         let case = folder.join("ray.toml").display().to_string();
         let words = ["--draws=3e5", "--fixed-draws", "--fresh", "--out", &out, "--", &case];
-        let asked = run::Arguments::of(&words.map(str::to_owned)).expect("words");
+        let requested = run::Arguments::of(&words.map(str::to_owned)).expect("words");
         let console = Console { color: output::When::Never, quiet: true };
         let catalogue = Catalogue::builtin();
-        let main = &|link| super::main(link, &asked, &catalogue, &console);
+        let main = &|link| super::main(link, &requested, &catalogue, &console);
         thread::scope(|scope| {
             let begin = |link| scope.spawn(move || main(link));
             let all: Vec<_> = links(ranks).into_iter().map(begin).collect();

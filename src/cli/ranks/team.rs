@@ -58,14 +58,15 @@ impl Team {
     /// Deals portions to the other ranks, two for each thread at a time, until all blocks are drawn.
     fn deal(&self, names: &[BlockName], next: &AtomicUsize, drawing: &Drawing, take: &Take) {
         let Some(threads) = self.threads.get() else { return };
-        let most = (names.len() / (PORTIONS * self.threads())).max(1);
+        let maximum = (names.len() / (PORTIONS * self.threads())).max(1);
         let (mut open, mut is_told) = (vec![0; threads.len()], false);
         loop {
             for rank in 1..threads.len() {
                 while open[rank] < 2 * threads[rank] {
                     // Portions shrink towards the end, so that no rank has much left when the others are done.
                     let left = names.len().saturating_sub(next.load(Ordering::Relaxed));
-                    let dealt = portion(names, next, (left / (2 * self.threads())).clamp(1, most));
+                    let dealt =
+                        portion(names, next, (left / (2 * self.threads())).clamp(1, maximum));
                     if dealt.is_empty() {
                         break;
                     }
@@ -131,9 +132,9 @@ impl Workers for Team {
 }
 
 /// Returns the next blocks that are not dealt yet.
-fn portion<'n>(names: &'n [BlockName], next: &AtomicUsize, most: usize) -> &'n [BlockName] {
-    let begin = next.fetch_add(most, Ordering::Relaxed).min(names.len());
-    &names[begin..(begin + most).min(names.len())]
+fn portion<'n>(names: &'n [BlockName], next: &AtomicUsize, maximum: usize) -> &'n [BlockName] {
+    let begin = next.fetch_add(maximum, Ordering::Relaxed).min(names.len());
+    &names[begin..(begin + maximum).min(names.len())]
 }
 
 impl Drop for Team {

@@ -89,7 +89,7 @@ impl Header {
 
 /// Returns a hash of everything that draws and decisions of an experiment depend on.
 fn key(plan: &Plan, case: &PlannedCase, planned: &PlannedExperiment, made_by: &str) -> u64 {
-    let asked: Vec<_> = planned.questions.iter().map(|q| (q.check, q.channel)).collect();
+    let requested: Vec<_> = planned.questions.iter().map(|q| (q.check, q.channel)).collect();
     let numbers = (planned.draws, planned.fixed, planned.horizon, planned.expect_biased);
     let predicted = planned.outcome.as_ref().ok().map(|ready| {
         let channels = ready.prediction.channels.iter();
@@ -98,7 +98,7 @@ fn key(plan: &Plan, case: &PlannedCase, planned: &PlannedExperiment, made_by: &s
     let place = (case.case.digest, &planned.id, planned.address);
     let looks = (plan.levels, plan.options.fixed, plan.options.blocks_per_look);
     let first = first_draws(planned);
-    name_hash(&format!("{:?}", (made_by, place, numbers, asked, predicted, first, looks)))
+    name_hash(&format!("{:?}", (made_by, place, numbers, requested, predicted, first, looks)))
 }
 
 /// Returns a hash of the first draws: they depend on more than the predictions, such as the order of equal voxels.

@@ -285,7 +285,7 @@ fn frame(content: &[u8]) -> Vec<u8> {
 
 /// Reads the content of the next frame, with `left` bytes to the end; `None` if it is not whole.
 fn read_frame(reader: &mut impl Read, left: u64) -> io::Result<Option<Vec<u8>>> {
-    let (mut length, mut found) = ([0; LENGTH], [0; HASH]);
+    let (mut length, mut result) = ([0; LENGTH], [0; HASH]);
     if left < OVERHEAD {
         return Ok(None);
     }
@@ -296,6 +296,6 @@ fn read_frame(reader: &mut impl Read, left: u64) -> io::Result<Option<Vec<u8>>> 
     }
     let mut content = vec![0; length as usize];
     reader.read_exact(&mut content)?;
-    reader.read_exact(&mut found)?;
-    Ok((found == hash(&content).to_le_bytes()).then_some(content))
+    reader.read_exact(&mut result)?;
+    Ok((result == hash(&content).to_le_bytes()).then_some(content))
 }

@@ -216,10 +216,10 @@ impl BaselineEntry {
         // A predicted number of lookups without spread has deviation 0.
         let spread =
             experiment.lookups_deviation.map(|deviation| deviation * deviation * draws as f64);
-        let checks = row.own_findings().filter(|found| !found.expects_bias);
-        let checks = checks.filter_map(|found| {
-            let ln_e = found.gate?.ln_e;
-            let (check, what) = (found.check, found.what.clone());
+        let checks = row.own_findings().filter(|finding| !finding.expects_bias);
+        let checks = checks.filter_map(|finding| {
+            let ln_e = finding.gate?.ln_e;
+            let (check, what) = (finding.check, finding.what.clone());
             ln_e.is_finite().then_some(CheckEvidence { check, what, ln_e })
         });
         Self {
@@ -270,12 +270,12 @@ pub enum BaselineError {
         cause: serde_json::Error,
     },
     /// The file is of another kind of this program.
-    #[error("{}: {found}, not a baseline of this command; make one with --save-baseline", path.display())]
+    #[error("{}: {actual}, not a baseline of this command; make one with --save-baseline", path.display())]
     OtherKind {
         /// The file.
         path: PathBuf,
         /// Kind of the file.
-        found: &'static str,
+        actual: &'static str,
     },
     /// A number that no run can have.
     #[error("{}: the numbers of {id} are those of no run; make it anew with --save-baseline", path.display())]
@@ -287,14 +287,14 @@ pub enum BaselineError {
     },
     /// Another version of the format.
     #[error(
-        "{}: a baseline of form {found}, this program reads {expected}; \
+        "{}: a baseline of form {actual}, this program reads {expected}; \
          make it anew with --save-baseline", path.display()
     )]
     Schema {
         /// The file.
         path: PathBuf,
         /// Version of the file.
-        found: u64,
+        actual: u64,
         /// Version that the program reads.
         expected: u32,
     },
@@ -329,14 +329,14 @@ pub(crate) fn read<T: DeserializeOwned>(
         Ok(tree) => tree,
         Err(cause) => return Err(BaselineError::Broken { path, cause }),
     };
-    if let Some(found) = other_kind(&tree, list) {
-        return Err(BaselineError::OtherKind { path, found });
+    if let Some(actual) = other_kind(&tree, list) {
+        return Err(BaselineError::OtherKind { path, actual });
     }
     // The version is read first: everything else depends on it.
-    if let Some(found) = tree.get("schema").and_then(serde_json::Value::as_u64)
-        && found != u64::from(expected)
+    if let Some(actual) = tree.get("schema").and_then(serde_json::Value::as_u64)
+        && actual != u64::from(expected)
     {
-        return Err(BaselineError::Schema { path, found, expected });
+        return Err(BaselineError::Schema { path, actual, expected });
     }
     serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
 }
@@ -350,8 +350,8 @@ fn other_kind(tree: &serde_json::Value, list: &str) -> Option<&'static str> {
         ("cases", "the record of a bench"),
     ];
     let has = |key: &str| tree.get(key).is_some();
-    let found = kinds.into_iter().find(|(key, _)| has(key)).filter(|_| !has(list));
-    found.map(|(_, kind)| kind)
+    let other = kinds.into_iter().find(|(key, _)| has(key)).filter(|_| !has(list));
+    other.map(|(_, kind)| kind)
 }
 
 /// Validates that a file can be written; makes its folder.

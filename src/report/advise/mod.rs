@@ -51,7 +51,7 @@ table! {
         "setup_lookups" ["setup", "", Short(3)]: "Lookups of a ray before its first draw" = |of| of.row.score.setup_lookups;
         "margin_below" ["doubles below", "", Short(3)]: "Factor on σ̂ below which the cost doubles; 0 for none" = |of| of.row.margins.map(|margins| margins[0]);
         "margin_above" ["doubles above", "", Short(3)]: "Factor on σ̂ above which the cost doubles" = |of| of.row.margins.map(|margins| margins[1]);
-        "least_sampling" ["least σ̂", "", Short(3)]: "Least σ̂, or factor, for which the estimator exists with a finite variance; 0 for any" = |of| of.row.least;
+        "least_sampling" ["least σ̂", "", Short(3)]: "Least σ̂, or factor, for which the estimator exists with a finite variance; 0 for any" = |of| of.row.minimum;
         "kurtosis" ["kurtosis", "", Short(3)]: "Largest kurtosis of a draw on a ray" = |of| of.row.score.kurtosis;
         "trusted_draws" ["draws until trusted", "", Short(2)]: "Draws until the sample variance has a standard error of 10 %" = |of| of.row.trusted();
         "needs": "Knowledge of the medium that is needed beside lookups" = |of| &of.row.needs;

@@ -62,8 +62,8 @@ fn entry(row: &Row, index: usize) -> LegendEntry {
 /// Draws the costs against σ̂.
 fn costs(sheet: &mut Sheet, advice: &Advice, rows: &[&Row]) {
     let points = || rows.iter().flat_map(|row| row.curve.iter().copied());
-    let least = points().map(|[_, y]| y).fold(f64::INFINITY, f64::min);
-    let shown = || points().filter(|[_, y]| *y <= RANGE * least);
+    let minimum = points().map(|[_, y]| y).fold(f64::INFINITY, f64::min);
+    let shown = || points().filter(|[_, y]| *y <= RANGE * minimum);
     let title = match (advice.target, advice.unit()) {
         (Target::Error(error), unit) => format!("cost to {} [{unit}]", short(error, 3)),
         (Target::Budget(_), _) => "relative error".to_owned(),
@@ -85,9 +85,9 @@ fn costs(sheet: &mut Sheet, advice: &Advice, rows: &[&Row]) {
 
 /// Returns the power of ten, and its words, by which the residual is as high as the best σ̂ at most.
 fn scale(profile: &SamplingProfile) -> (f64, String) {
-    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let residual = most(&mut profile.residual.iter().map(|point| point[1]));
-    let ratio = most(&mut profile.values.iter().copied()) / residual;
+    let maximum = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let residual = maximum(&mut profile.residual.iter().map(|point| point[1]));
+    let ratio = maximum(&mut profile.values.iter().copied()) / residual;
     let scale = 10_f64.powf(ratio.log10().floor().clamp(0.0, 300.0));
     let is_used = scale.is_finite() && scale > 1.0;
     if is_used { (scale, format!("{} × ", number(scale))) } else { (1.0, String::new()) }

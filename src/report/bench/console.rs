@@ -80,11 +80,11 @@ pub fn opening(plan: &Plan, rounds: u32, draws: u64) -> String {
 pub fn meaning(bench: &Bench) -> String {
     let Conditions { level, threads, .. } = &bench.conditions;
     match &bench.comparison {
-        Some(found) if found.fails() => {
-            format!("fail: something became slower than baseline {}\n", found.name)
+        Some(finding) if finding.fails() => {
+            format!("fail: something became slower than baseline {}\n", finding.name)
         }
-        Some(found) if !found.is_empty() => {
-            format!("pass: nothing became slower than baseline {}\n", found.name)
+        Some(finding) if !finding.is_empty() => {
+            format!("pass: nothing became slower than baseline {}\n", finding.name)
         }
         _ => format!(
             "Times hold for this machine ({level}, threads: {threads}); --save-baseline NAME keeps them to compare later ones with.\n"

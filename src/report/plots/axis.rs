@@ -54,8 +54,8 @@ impl Axis {
     fn over(title: String, log: bool, margin: f64, [low, high]: [f64; 2]) -> Self {
         let scale = |value| scaled(log, value);
         let (low, high) = if low > high { (scale(0.1), scale(1.0)) } else { (low, high) };
-        let least = if log { 0.02 } else { low.abs().max(high.abs()).max(1e-300) * 1e-6 };
-        let widen = if high - low < least {
+        let minimum = if log { 0.02 } else { low.abs().max(high.abs()).max(1e-300) * 1e-6 };
+        let widen = if high - low < minimum {
             if log { 0.3 } else { low.abs().max(1e-3) * 0.1 }
         } else {
             margin * (high - low)

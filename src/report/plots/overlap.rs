@@ -125,8 +125,8 @@ pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
 }
 
 /// Places points side by side that would hide each other. Returns for each point in turn a shift to the right, at most
-/// `most` in size; points closer than `apart` both ways hide each other.
-pub fn side_by_side(points: &[[f64; 2]], apart: f64, most: f64) -> Vec<f64> {
+/// `maximum` in size; points closer than `apart` both ways hide each other.
+pub fn side_by_side(points: &[[f64; 2]], apart: f64, maximum: f64) -> Vec<f64> {
     let mut placed: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     let shifts = points.iter().map(|&[x, y]| {
         let is_free = |shift: &f64| {
@@ -134,7 +134,7 @@ pub fn side_by_side(points: &[[f64; 2]], apart: f64, most: f64) -> Vec<f64> {
                 .iter()
                 .any(|other| (other[0] - x - shift).abs() < apart && (other[1] - y).abs() < apart)
         };
-        let steps = (1..).map(|n| f64::from(n) * apart).take_while(|step| *step <= most);
+        let steps = (1..).map(|n| f64::from(n) * apart).take_while(|step| *step <= maximum);
         let mut shifts = std::iter::once(0.0).chain(steps.flat_map(|step| [step, -step]));
         let shift = shifts.find(is_free).unwrap_or(0.0);
         placed.push([x + shift, y]);

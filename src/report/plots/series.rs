@@ -47,8 +47,8 @@ impl Series<'_> {
     /// Returns the range of the setup lookups of its rows; `None` if all are 0 or unknown.
     pub fn setup_lookups(&self) -> Option<RangeInclusive<u64>> {
         let counts = || self.rows.iter().filter_map(|row| row.experiment.setup_lookups);
-        let most = counts().max().filter(|&most| most > 0)?;
-        Some(counts().min().unwrap_or(most)..=most)
+        let maximum = counts().max().filter(|&maximum| maximum > 0)?;
+        Some(counts().min().unwrap_or(maximum)..=maximum)
     }
 
     /// Returns the entry of the legend: the label, and what the estimator needs.
@@ -130,8 +130,8 @@ fn group<'a, 'b>(
     listed: usize,
     channel: &'a str,
 ) -> &'b mut SeriesGroup<'a> {
-    let found = groups.iter().position(|g| (g.listed, g.channel) == (listed, channel));
-    let at = found.unwrap_or_else(|| {
+    let finding = groups.iter().position(|g| (g.listed, g.channel) == (listed, channel));
+    let at = finding.unwrap_or_else(|| {
         groups.push(SeriesGroup { listed, channel, rows: Vec::new(), curve: None });
         groups.len() - 1
     });
@@ -248,9 +248,12 @@ pub fn marks(needs: &str, setup: Option<RangeInclusive<u64>>, is_fixed: bool) ->
     if !needs.is_empty() {
         marks.push(format!("needs {}", needs.replace("_t", "ₜ")));
     }
-    if let Some((least, most)) = setup.map(RangeInclusive::into_inner).filter(|ends| ends.1 > 0) {
-        let from = if least < most { format!("{} to ", count(least)) } else { String::new() };
-        marks.push(format!("{from}{} setup lookups", count(most)));
+    if let Some((minimum, maximum)) =
+        setup.map(RangeInclusive::into_inner).filter(|ends| ends.1 > 0)
+    {
+        let from =
+            if minimum < maximum { format!("{} to ", count(minimum)) } else { String::new() };
+        marks.push(format!("{from}{} setup lookups", count(maximum)));
     }
     if is_fixed {
         marks.push("not swept".to_owned());
@@ -297,9 +300,9 @@ mod tests {
         series.map(|series| (series.label, series.rows.len())).collect()
     }
 
-    fn are(found: &[(String, usize)], expected: &[(&str, usize)]) {
-        let found: Vec<(&str, usize)> = found.iter().map(|(label, n)| (&**label, *n)).collect();
-        assert_eq!(found, expected);
+    fn are(finding: &[(String, usize)], expected: &[(&str, usize)]) {
+        let finding: Vec<(&str, usize)> = finding.iter().map(|(label, n)| (&**label, *n)).collect();
+        assert_eq!(finding, expected);
     }
 
     #[test]
@@ -344,7 +347,7 @@ mod tests {
             let id = ExperimentId { sampling, ..one.id.clone() };
             ExperimentRecord { id, ..one }
         };
-        let found = labels_of(&case(vec![
+        let finding = labels_of(&case(vec![
             // The same name swept in its control, and beside the sweep.
             at(one(0, "decomposition", "constant 0.1", Some(0.1)), Some(0.9), "constant"),
             at(one(0, "decomposition", "constant 0.2", Some(0.2)), Some(0.9), "constant"),
@@ -364,7 +367,7 @@ mod tests {
             ("ratio", 1),
             ("ratio #2", 1),
         ];
-        are(&found, &expected);
+        are(&finding, &expected);
     }
 
     #[test]

@@ -85,7 +85,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let step = (0.7 * smallest_step(places).min(120.0) / slots.max(1.0)).min(MARKER);
     // Points of a value at the edge of the sweep stay side by side within the panel.
     let reach = 4.0 + (slots - 1.0).max(0.0) / 2.0 * step;
-    let (least, most) = (panel.left + reach, (panel.right - reach).max(panel.left + reach));
+    let (minimum, maximum) = (panel.left + reach, (panel.right - reach).max(panel.left + reach));
     let mut beyond = false;
     let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
@@ -96,7 +96,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
             for row in &one.rows {
                 // Estimators that are not swept have a place at the right edge, as in other panels.
                 let place = row.experiment.swept().map_or(Some(edge), |swept| {
-                    Some(panel.across(swept)?.clamp(least, most) + shift)
+                    Some(panel.across(swept)?.clamp(minimum, maximum) + shift)
                 });
                 let (Some(x), Some(z)) = (place, row.compared(score).z) else { continue };
                 // An infinite score has no place on the axis, and counts as beyond it.

@@ -60,7 +60,7 @@ pub fn short(x: f64) -> String {
     }
     let decimals = [(100.0, 0), (10.0, 1), (1.0, 2), (0.1, 3), (0.01, 4), (0.001, 5)];
     let decimals =
-        decimals.into_iter().find(|&(least, _)| size >= least).map_or(6, |found| found.1);
+        decimals.into_iter().find(|&(minimum, _)| size >= minimum).map_or(6, |finding| finding.1);
     format!("{x:.decimals$}")
 }
 
@@ -74,7 +74,7 @@ pub struct PictureImage<'a> {
 }
 
 impl PictureImage<'_> {
-    fn found<T>(&self, figure: fn(&Exposure) -> T) -> Option<T> {
+    fn finding<T>(&self, figure: fn(&Exposure) -> T) -> Option<T> {
         self.exposure.outcome.as_ref().ok().map(figure)
     }
 }
@@ -92,13 +92,13 @@ table! {
         "covered_pixels": "Number of pixels that the volume covers" = |of| of.picture.covered;
         "empty_pixels": "Number of pixels that take no lookup" = |of| of.picture.empty;
         "budget": "Lookups of a covered pixel" = |of| of.picture.budget;
-        "draws_per_pixel" ["draws/pixel", "", Short(3)]: "Draws of a pixel" = |of| of.found(|found| found.draws);
-        "lookups_per_pixel" ["lookups/pixel", "", Short(3)]: "Lookups of σ_t for a pixel" = |of| of.found(|found| found.lookups);
-        "pilot_lookups_per_pixel": "Lookups of pilot rays for a pixel" = |of| of.found(|found| found.pilots);
-        "rmse" ["RMSE", "", Short(3)]: "Root mean squared difference from the reference" = |of| of.found(|found| found.rmse);
-        "predicted_rmse" ["in theory", "", Short(3)]: "Root mean squared difference in theory" = |of| of.found(|found| found.predicted_rmse).flatten();
-        "mean_error" ["mean error", "", Short(3)]: "Mean difference from the reference" = |of| of.found(|found| found.bias);
-        "figure_of_merit" ["1/(MSE · lookups)", "", Short(3)]: "Figure of merit: larger is better" = |of| of.found(|found| found.figure_of_merit).flatten();
+        "draws_per_pixel" ["draws/pixel", "", Short(3)]: "Draws of a pixel" = |of| of.finding(|finding| finding.draws);
+        "lookups_per_pixel" ["lookups/pixel", "", Short(3)]: "Lookups of σ_t for a pixel" = |of| of.finding(|finding| finding.lookups);
+        "pilot_lookups_per_pixel": "Lookups of pilot rays for a pixel" = |of| of.finding(|finding| finding.pilots);
+        "rmse" ["RMSE", "", Short(3)]: "Root mean squared difference from the reference" = |of| of.finding(|finding| finding.rmse);
+        "predicted_rmse" ["in theory", "", Short(3)]: "Root mean squared difference in theory" = |of| of.finding(|finding| finding.predicted_rmse).flatten();
+        "mean_error" ["mean error", "", Short(3)]: "Mean difference from the reference" = |of| of.finding(|finding| finding.bias);
+        "figure_of_merit" ["1/(MSE · lookups)", "", Short(3)]: "Figure of merit: larger is better" = |of| of.finding(|finding| finding.figure_of_merit).flatten();
         "reference": "Source of the reference" = |of| &of.picture.reference.how;
         "reference_error": "Root mean squared error of the reference" = |of| of.picture.reference.error;
         "reason" ["refused", "", Plain]: "Reason why there is no image" = |of| of.exposure.outcome.as_ref().err().map_or("", String::as_str);

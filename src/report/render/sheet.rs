@@ -91,10 +91,10 @@ fn reference(
     show(sheet, picture(record, &record.reference.image, [left, top], size));
     legend(sheet, record, place);
     let mut lines = wrapped(face, &format!("reference: {}", record.reference.how), room, 3);
-    let found = &record.reference;
-    lines.push(format!("its RMS error {}", short(found.error)));
-    if found.lookups > 0.0 {
-        lines.push(format!("lookups/pixel {}", short(found.lookups)));
+    let finding = &record.reference;
+    lines.push(format!("its RMS error {}", short(finding.error)));
+    if finding.lookups > 0.0 {
+        lines.push(format!("lookups/pixel {}", short(finding.lookups)));
     }
     write(sheet, place, &lines);
 }
@@ -105,8 +105,8 @@ fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &SheetColumn) {
     let top = top + size[1] + 8.0;
     let (high, low) = (top + 26.0, top + size[1] - size[1].min(120.0) / 8.0);
     let strongest = number(record.strongest);
-    let [most, least] = [format!("≥ {strongest}"), format!("≤ −{strongest}")];
-    let marks = [(0.0, &*most), (0.5, "0"), (1.0, &*least)];
+    let [maximum, minimum] = [format!("≥ {strongest}"), format!("≤ −{strongest}")];
+    let marks = [(0.0, &*maximum), (0.5, "0"), (1.0, &*minimum)];
     colour::bar(sheet, [left + 20.0, high], low - high, (record.channels, &marks));
     let words = if record.channels > 1 { "by channel" } else { "image − reference" };
     sheet.text([left, top + 8.0], words, LETTER, DARK, Align::Start);
@@ -127,10 +127,10 @@ fn exposure(
 ) {
     let SheetColumn { left, top, size } = *place;
     match &exposure.outcome {
-        Ok(found) => {
-            show(sheet, picture(record, &found.image, [left, top], size));
+        Ok(finding) => {
+            show(sheet, picture(record, &finding.image, [left, top], size));
             let below = [left, top + size[1] + 8.0];
-            show(sheet, difference(record, &found.image, below, size));
+            show(sheet, difference(record, &finding.image, below, size));
         }
         Err(reason) => {
             sheet.frame([left, top], size, FAINT);
@@ -155,17 +155,17 @@ fn words(face: &Typeface, exposure: &ExposureRecord, room: f64) -> Vec<String> {
     lines
 }
 
-fn costs(found: &Exposure) -> Vec<String> {
-    let predicted = found.predicted_rmse.map(|rmse| format!(" (theory {})", short(rmse)));
-    let merit = found.figure_of_merit.map_or("–".into(), short);
+fn costs(finding: &Exposure) -> Vec<String> {
+    let predicted = finding.predicted_rmse.map(|rmse| format!(" (theory {})", short(rmse)));
+    let merit = finding.figure_of_merit.map_or("–".into(), short);
     let mut lines = vec![
-        format!("RMSE {}{}", short(found.rmse), predicted.unwrap_or_default()),
-        format!("lookups/pixel {}", short(found.lookups)),
-        format!("draws/pixel {}", short(found.draws)),
+        format!("RMSE {}{}", short(finding.rmse), predicted.unwrap_or_default()),
+        format!("lookups/pixel {}", short(finding.lookups)),
+        format!("draws/pixel {}", short(finding.draws)),
         format!("figure of merit {merit}"),
     ];
-    if found.pilots > 0.0 {
-        lines.push(format!("pilot lookups/pixel {}", short(found.pilots)));
+    if finding.pilots > 0.0 {
+        lines.push(format!("pilot lookups/pixel {}", short(finding.pilots)));
     }
     lines
 }
@@ -200,10 +200,10 @@ fn difference(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2
 }
 
 /// Returns a text in lines of a width; the last one is cut if the text is too long.
-fn wrapped(face: &Typeface, text: &str, width: f64, most: usize) -> Vec<String> {
+fn wrapped(face: &Typeface, text: &str, width: f64, maximum: usize) -> Vec<String> {
     let mut lines = font::wrapped(face, text, LETTER, width);
-    if lines.len() > most {
-        let rest = lines.split_off(most - 1).join(" ");
+    if lines.len() > maximum {
+        let rest = lines.split_off(maximum - 1).join(" ");
         lines.push(fit(face, &rest, LETTER, width));
     }
     lines

@@ -11,12 +11,12 @@ pub struct FindingRow<'a> {
     /// Row.
     pub of: Row<'a>,
     /// Finding.
-    pub found: &'a Finding,
+    pub finding: &'a Finding,
 }
 
 impl FindingRow<'_> {
     fn gate<T>(&self, number: fn(GateFinding) -> T) -> Option<T> {
-        self.found.gate.map(number)
+        self.finding.gate.map(number)
     }
 }
 
@@ -28,11 +28,11 @@ table! {
         "sampling_kind" = |row| &row.of.experiment.id.sampling.kind;
         "control" = |row| &row.of.experiment.id.control;
         "swept" = |row| row.of.experiment.swept();
-        "check": "Name of the check, as in `trueflight list checks`" = |row| row.found.check.name();
-        "what": "Quantity" = |row| &row.found.what;
-        "channel": "Which value of a draw; empty for the experiment as a whole" = |row| &row.found.channel;
-        "verdict": "Result of the check" = |row| row.found.verdict.word();
-        "reason": "Reason of the verdict; empty for a plain pass" = |row| row.found.words();
+        "check": "Name of the check, as in `trueflight list checks`" = |row| row.finding.check.name();
+        "what": "Quantity" = |row| &row.finding.what;
+        "channel": "Which value of a draw; empty for the experiment as a whole" = |row| &row.finding.channel;
+        "verdict": "Result of the check" = |row| row.finding.verdict.word();
+        "reason": "Reason of the verdict; empty for a plain pass" = |row| row.finding.words();
         "tolerance" ["ε", "", Percent]: "Tolerance ε of the gate, relative" = |row| row.gate(|gate| gate.tolerance);
         "variance_of_y": "Variance V of the gate, relative" = |row| row.gate(|gate| gate.variance);
         "planned": "Number of planned draws, 27 V/ε²" = |row| row.gate(|gate| gate.planned);
@@ -44,9 +44,9 @@ table! {
         "ln_p_above" ["ln P of +ε", "", Short(4)]: "Evidence against a bias of +ε" = |row| row.gate(|gate| gate.ln_p[0]);
         "ln_p_below" ["ln P of −ε", "", Short(4)]: "Evidence against a bias of −ε" = |row| row.gate(|gate| gate.ln_p[1]);
         "ln_p_limit" ["limit", "", Short(4)]: "Limit of both ln P, at which it passes" = |row| row.gate(|gate| gate.ln_p_limit);
-        "z" ["z", "", Signed]: "Difference from theory in standard errors, over the fixed draws" = |row| row.found.z;
-        "p" ["p", "", Short(3)]: "p-value of a test of a whole distribution" = |row| row.found.p;
-        "block": "Block after which it was decided, or with the violation" = |row| row.found.block;
+        "z" ["z", "", Signed]: "Difference from theory in standard errors, over the fixed draws" = |row| row.finding.z;
+        "p" ["p", "", Short(3)]: "p-value of a test of a whole distribution" = |row| row.finding.p;
+        "block": "Block after which it was decided, or with the violation" = |row| row.finding.block;
     }
 }
 
@@ -55,6 +55,6 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     let findings = record
         .results
         .rows()
-        .flat_map(|of| of.own_findings().map(move |found| FindingRow { of, found }));
+        .flat_map(|of| of.own_findings().map(move |finding| FindingRow { of, finding }));
     Ok(vec![fields::artifact("checks.csv", &FindingRow::fields(), findings)?])
 }

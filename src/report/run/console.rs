@@ -74,13 +74,13 @@ pub fn opening(plan: &Plan) -> String {
     let Options { seed, alpha, .. } = plan.options;
     let cases = subjects(plan);
     let drawn = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
-    let [most, horizon] = drawn.fold([0; 2], |[most, horizon], (_, planned)| {
-        [most.max(planned.draws), horizon.max(planned.horizon)]
+    let [maximum, horizon] = drawn.fold([0; 2], |[maximum, horizon], (_, planned)| {
+        [maximum.max(planned.draws), horizon.max(planned.horizon)]
     });
     let experiments = counted(plan.experiments().count() as u64, "experiment");
     format!(
         "{cases}: {experiments}, {} each planned and at most {}, seed {seed}, α = {}\n",
-        counted(most, "draw"),
+        counted(maximum, "draw"),
         count(horizon),
         short(alpha, 3)
     )

@@ -81,7 +81,7 @@ impl Failure<'_> {
         let known =
             |name: &str, text: String| (!text.is_empty()).then(|| format!("{name}: {text}"));
         let line = SummaryRow { row, seed };
-        let finding = finding.map(|found| FindingRow { of: row, found });
+        let finding = finding.map(|finding| FindingRow { of: row, finding });
         let reason = finding.is_none().then(|| self.reason());
         let stream = row.experiment.stream.map(|stream| stream.to_string());
         let mut lines = vec![

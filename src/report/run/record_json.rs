@@ -65,10 +65,10 @@ pub fn text(record: &Record) -> Result<String, ReportError> {
 #[non_exhaustive]
 pub enum UnreadableRecord {
     /// Another version of the format.
-    #[error("a record of form {found}, this program reads {SCHEMA}")]
+    #[error("a record of form {actual}, this program reads {SCHEMA}")]
     Schema {
         /// Version of the text.
-        found: u64,
+        actual: u64,
     },
     /// The text is not a record.
     #[error("not a record, or a broken one ({0})")]
@@ -84,9 +84,9 @@ pub fn read(text: &[u8]) -> Result<Record, UnreadableRecord> {
     let tree: Value = serde_json::from_slice(text)?;
     // The version is read first: everything else depends on it.
     let schema = tree.get("schema").ok_or_else(|| serde_json::Error::missing_field("schema"))?;
-    let found = u64::deserialize(schema)?;
-    if found != u64::from(SCHEMA) {
-        return Err(UnreadableRecord::Schema { found });
+    let actual = u64::deserialize(schema)?;
+    if actual != u64::from(SCHEMA) {
+        return Err(UnreadableRecord::Schema { actual });
     }
     let document: Document<Results> = serde_json::from_value(tree)?;
     let Document { mut results, timing, comparison, .. } = document;

@@ -145,9 +145,9 @@ fn subtitle(case: &CaseRecord, seed: u64) -> String {
         parts.push(format!("truth {}", short(*first, 6)));
     }
     let draws: Vec<u64> = case.experiments.iter().filter_map(|one| one.draws).collect();
-    if let (Some(&least), Some(&most)) = (draws.iter().min(), draws.iter().max()) {
-        let to = if least < most { format!(" to {}", count(most)) } else { String::new() };
-        parts.push(format!("{}{to} draws", count(least)));
+    if let (Some(&minimum), Some(&maximum)) = (draws.iter().min(), draws.iter().max()) {
+        let to = if minimum < maximum { format!(" to {}", count(maximum)) } else { String::new() };
+        parts.push(format!("{}{to} draws", count(minimum)));
         parts.push(format!("seed {seed}"));
     }
     parts.join("  ·  ")

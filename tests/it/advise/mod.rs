@@ -53,13 +53,13 @@ fn a_homogeneous_line_has_the_best_rows_of_closed_forms() {
     let woodcock = row(&advice, "woodcock");
     let work = (1.0 - t) / t * (1.0 - t) * 1e4;
     none(&differs("woodcock", woodcock.time, work, 1e-9).into_iter().collect::<Vec<_>>());
-    assert_eq!((woodcock.constant, woodcock.least.map(|x| x > 0.49)), (Some(0.5), Some(true)));
+    assert_eq!((woodcock.constant, woodcock.minimum.map(|x| x > 0.49)), (Some(0.5), Some(true)));
     // Ratio tracking falls towards τ² for each lookup.
     let ratio = row(&advice, "ratio");
     assert_eq!(ratio.kind, PlaceKind::NearLimit);
     let over = ratio.time / (4.0 * 1e4);
     assert!((1.049..1.0501).contains(&over), "{over}");
-    assert_eq!(ratio.least, Some(0.0));
+    assert_eq!(ratio.minimum, Some(0.0));
     // Regular tracking is exact with one lookup; the closed form needs τ.
     let regular = advice.rows.iter().find(|row| row.estimator == "regular").expect("a row");
     assert_eq!((regular.group, regular.time, regular.score.deviation()), (Group::Ranked, 1.0, 0.0));
@@ -268,7 +268,7 @@ fn every_problem_is_advised_or_says_why_not() {
     let weighted = row(&advice, "weighted");
     assert!(weighted.constant.is_some() && advice.rows.len() >= 4, "{:?}", advice.refused);
     // Below a critical σ̂ the variance of the weighted walk is infinite.
-    assert!(weighted.least.is_some_and(|least| least < weighted.constant.expect("σ̂")));
+    assert!(weighted.minimum.is_some_and(|least| least < weighted.constant.expect("σ̂")));
 }
 
 #[test]

@@ -248,7 +248,7 @@ fn what_is_no_baseline_is_an_error_with_its_cure() {
     std::fs::write(&path, &whole[..whole.len() / 2]).expect("written");
     assert!(matches!(read(), BaselineError::Broken { .. }));
     std::fs::write(&path, whole.replace("\"schema\":1", "\"schema\":9")).expect("written");
-    assert!(matches!(read(), BaselineError::Schema { found: 9, .. }));
+    assert!(matches!(read(), BaselineError::Schema { actual: 9, .. }));
     assert!(read().to_string().contains("--save-baseline"));
     for name in ["", "a/b", "..", ".x", "a b"] {
         assert!(

@@ -32,7 +32,7 @@ fn rare_events_do_not_fail_a_correct_mean() {
 fn correct_draws_of_hard_laws_do_not_fail() {
     let verdicts = streams::all(4, &|_| {});
     for row in &verdicts {
-        assert_eq!(row.failed, 0, "{}, {}: {}", row.law, row.known, row.reason);
+        assert_eq!(row.failed, 0, "{}, {}: {}", row.distribution, row.known, row.reason);
     }
     // Every distribution has its truth and its variance, all but one a kurtosis, all but one a range.
     assert_eq!(verdicts.len(), 4 * LAWS.len() - 2);

@@ -125,7 +125,7 @@ impl Read for Endless {
 #[test]
 fn a_pipe_without_end_ends() {
     let claim = Claim { variance: Some(0.0), ..Claim::of_truth(0.5) }.validated();
-    let wanted = Options { most: Some(1_000_000), ..Options::default() };
+    let wanted = Options { maximum: Some(1_000_000), ..Options::default() };
     let trial = CheckedClaim::new(claim.expect("a claim"), wanted, None).expect("a trial");
     let format = NumberFormat::Csv { column: None, lookups: None };
     let mut draws = DrawSource::from_reader(Endless, "stdin", format).expect("draws");

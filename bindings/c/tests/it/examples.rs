@@ -28,12 +28,12 @@ fn a_lambda_is_judged() {
 #[test]
 fn theory_is_asked_where_it_is_there() {
     let (code, text) = run("case.cpp", Link::Static);
-    let (wanted, said) = if cfg!(feature = "theory") {
+    let (expected, said) = if cfg!(feature = "theory") {
         (0, "`too thin`: fail")
     } else {
         (2, "built without theory; build it with the feature `theory`")
     };
-    assert_eq!(code, Some(wanted), "{text}");
+    assert_eq!(code, Some(expected), "{text}");
     assert!(text.contains(said), "{text}");
 }
 
@@ -65,9 +65,9 @@ fn costs_are_measured() {
     // The goal is 10 ns on a machine that takes 60 for the usual draw. It is tested on the uniform draw. For the usual
     // draw the difference includes a loss of the processor: without a call it overlaps one draw with the next. That is
     // 26 of 78 ns on one machine, and below 10 on another, by the same program.
-    let most = rows[1][0] / 6.0;
+    let maximum = rows[1][0] / 6.0;
     let cheap = rows[0][1].max(rows[0][2]);
-    assert!(cheap < most, "{text}");
+    assert!(cheap < maximum, "{text}");
     for row in rows {
         let [draw, _, _, by_range, by_variance] = row[..] else { panic!("{text}") };
         assert!(draw > 0.0 && by_range > 0.0 && by_variance > 0.0, "{text}");

@@ -13,7 +13,7 @@ fn bad_input_gets_one_clear_error() {
     let (code, text) = run("errors.c");
     assert_eq!(code, Some(0), "{text}");
     let case = if cfg!(feature = "theory") { "no/such-case" } else { "built without theory" };
-    let wanted = [
+    let expected = [
         ("no name", "1 the check's name is null"),
         ("bad name", "1 the check's name is not UTF-8"),
         ("no check", "1 the check is null"),
@@ -49,13 +49,13 @@ fn bad_input_gets_one_clear_error() {
         ("after the verdict", "7 check `half`: the verdict was given; make a new check"),
         ("nan", "1 numeric: draw 0"),
     ];
-    for (what, said) in wanted {
+    for (what, said) in expected {
         // A message on a case has several lines.
         let start = text.find(&format!("{what}: ")).unwrap_or_else(|| panic!("no {what}: {text}"));
-        let found = &text[start + what.len() + 2..];
-        let end = if what == "no such case" { found.find("\nragged") } else { found.find('\n') };
-        let found = &found[..end.expect("an end")];
-        assert!(found.contains(said), "{what}: {found}\n  does not say\n{said}");
+        let result = &text[start + what.len() + 2..];
+        let end = if what == "no such case" { result.find("\nragged") } else { result.find('\n') };
+        let result = &result[..end.expect("an end")];
+        assert!(result.contains(said), "{what}: {result}\n  does not say\n{said}");
     }
 }
 

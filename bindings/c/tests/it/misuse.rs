@@ -7,11 +7,11 @@ use crate::build::here;
 use crate::ffi::run;
 
 /// Compares the output of a program with the beginnings of its lines.
-fn lines_begin(text: &str, wanted: &[&str]) {
+fn lines_begin(text: &str, expected: &[&str]) {
     let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(lines.len(), wanted.len(), "{text}");
-    for (line, wanted) in lines.iter().zip(wanted) {
-        assert!(line.starts_with(wanted), "{line}\n  does not begin by\n{wanted}");
+    assert_eq!(lines.len(), expected.len(), "{text}");
+    for (line, expected) in lines.iter().zip(expected) {
+        assert!(line.starts_with(expected), "{line}\n  does not begin by\n{expected}");
     }
 }
 
@@ -21,7 +21,7 @@ fn the_first_draws_validate_the_claim() {
     assert_eq!(code, Some(0), "{text}");
     // A message on a case has several lines.
     let lines: Vec<&str> = text.lines().filter(|line| line.contains(": ")).collect();
-    let wanted = [
+    let expected = [
         ("alpha", "alpha = -1 is not a probability above 0 and below 1"),
         ("alpha 1", "alpha = 1 is not a probability above 0 and below 1"),
         ("tolerance", "tolerance = 0 is not a finite number above 0"),
@@ -52,17 +52,20 @@ fn the_first_draws_validate_the_claim() {
         ("three lookups", "lookups takes 2 numbers, mean and variance, but was given 3 numbers"),
         ("more than the mean", "mean_only = 2 is not a whole number from 0 to 1"),
     ];
-    for (name, said) in wanted {
-        let wanted = format!("{name}: 3 check `{name}`: {said}");
-        assert!(lines.iter().any(|line| line.starts_with(&wanted)), "{text}\n  lacks\n{wanted}");
+    for (name, said) in expected {
+        let expected = format!("{name}: 3 check `{name}`: {said}");
+        assert!(
+            lines.iter().any(|line| line.starts_with(&expected)),
+            "{text}\n  lacks\n{expected}"
+        );
     }
     for (name, status, said) in [
         ("no array", 1, "the array of numbers is null"),
         ("no key", 10, "library 0.1.0 has no key 99"),
         ("case", 4, ""),
     ] {
-        let wanted = format!("\n{name}: {status} check `{name}`: {said}");
-        assert!(text.contains(&wanted), "{text}\n  lacks\n{wanted}");
+        let expected = format!("\n{name}: {status} check `{name}`: {said}");
+        assert!(text.contains(&expected), "{text}\n  lacks\n{expected}");
     }
     assert!(text.contains("\nlast: 1, 0\n"), "{text}");
 }
@@ -72,7 +75,7 @@ fn a_draw_has_as_many_values_as_the_call_says() {
     let (code, text) = run("values.c");
     assert_eq!(code, Some(0), "{text}");
     let more = "give one for each value, or one for all";
-    let wanted = [
+    let expected = [
         "wanted: 1",
         "one truth: 0 ",
         "values: 3, passed: 1",
@@ -88,14 +91,14 @@ fn a_draw_has_as_many_values_as_the_call_says() {
         "most: 5 check `uniform`: a draw has 18446744073709551615 values; 65536 are judged together",
         "many: 5 check `uniform`: a draw has 281474976710656 values; 65536 are judged together at",
     ];
-    lines_begin(&text, &wanted);
+    lines_begin(&text, &expected);
 }
 
 #[test]
 fn a_lambda_says_how_many_values_a_draw_has() {
     let (code, text) = run("values.cpp");
     assert_eq!(code, Some(0), "{text}");
-    let wanted = [
+    let expected = [
         "one truth: 2 values, passed: 1",
         "two truths: 2 values, passed: 1",
         "three truths: 3 check `a`: 3 numbers for the truth, but a draw has 2 values; give one for each value",
@@ -108,7 +111,7 @@ fn a_lambda_says_how_many_values_a_draw_has() {
             "a case: 4 check `a`: nothing is known of `common-ratio`"
         },
     ];
-    lines_begin(&text, &wanted);
+    lines_begin(&text, &expected);
 }
 
 #[test]
@@ -128,7 +131,7 @@ fn a_callback_must_leave_its_own_check_alone() {
     let says = "check `half`: the check is drawing; a callback must not use it";
     let case = if cfg!(feature = "theory") { "nope" } else { "nothing is known of `x` of nope" };
     let (head, rest) = text.split_once("place: ").expect("the last error");
-    let wanted = [
+    let expected = [
         "draws: 7, 7, one block: 1, passed: 0",
         &format!("draws says: {says}"),
         "says: 7, 7, one block: 1, passed: 0",
@@ -138,7 +141,7 @@ fn a_callback_must_leave_its_own_check_alone() {
         "looks: 7, 0, one block: 0, passed: 1",
         "other: 0, 0, one block: 0, passed: 1",
     ];
-    lines_begin(head, &wanted);
+    lines_begin(head, &expected);
     let told: Vec<&str> = rest.split("place: ").collect();
     assert_eq!(told.len(), 3, "{text}");
     for told in told {
@@ -146,8 +149,8 @@ fn a_callback_must_leave_its_own_check_alone() {
     }
     let end = text.find("\nlong: ").expect("the long one");
     // Whole characters of two bytes, behind "check `".
-    let wanted = ["", "long: 16383, 1", "text: `half`: pass, 0, check `half`: set th"];
-    assert_eq!(text[end..].trim_end(), wanted.join("\n"), "{text}");
+    let expected = ["", "long: 16383, 1", "text: `half`: pass, 0, check `half`: set th"];
+    assert_eq!(text[end..].trim_end(), expected.join("\n"), "{text}");
 }
 
 #[test]

@@ -106,16 +106,16 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         let depth = setup.fields.mesh.optical_depth().value;
         if depth > LONGEST {
-            let found = format!("τ = {}", rounded(depth));
-            return Err(Refusal::mismatch("τ ≤ 12, as far as theory goes", found));
+            let actual = format!("τ = {}", rounded(depth));
+            return Err(Refusal::mismatch("τ ≤ 12, as far as theory goes", actual));
         }
         if self.0.is_tracked {
             let needs = "one number σ_t/σ̂ where connections are tracked, and ∫σ̂ ≤ 500";
             match one_ratio(setup) {
                 None => return Err(Refusal::mismatch(needs, "σ_t/σ̂ varies along the rod")),
                 Some(ratio) if depth > MAX_TRACKED * ratio => {
-                    let found = format!("∫σ̂ = {}", rounded(depth / ratio));
-                    return Err(Refusal::mismatch(needs, found));
+                    let actual = format!("∫σ̂ = {}", rounded(depth / ratio));
+                    return Err(Refusal::mismatch(needs, actual));
                 }
                 Some(_) => {}
             }
@@ -123,14 +123,14 @@ impl<const KIND: u8> Estimator<BidirectionalRod> for Estimate<KIND> {
         let orders = &setup.problem.orders;
         if let Some(order) = orders.clone().find(|&order| is_dark(&setup.problem, order)) {
             let BidirectionalRod { albedo, forward, .. } = &*setup.problem;
-            let found = format!("a = {albedo}, p_f = {forward} leave none to r = {order}");
-            return Err(Refusal::mismatch("light in every order of scattering", found));
+            let actual = format!("a = {albedo}, p_f = {forward} leave none to r = {order}");
+            return Err(Refusal::mismatch("light in every order of scattering", actual));
         }
         match self.0.combination {
             Combination::Technique(s) if s > orders.start() + 2 => {
                 let needs = "at most r + 2 light vertices, r the lowest order";
-                let found = format!("s = {s} and r = {}", orders.start());
-                Err(Refusal::mismatch(needs, found))
+                let actual = format!("s = {s} and r = {}", orders.start());
+                Err(Refusal::mismatch(needs, actual))
             }
             _ => Ok(()),
         }
@@ -189,10 +189,10 @@ fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
         let sampling = setup.fields.sampling.value(t);
         (sampling > 0.0).then_some(sigma / sampling)
     });
-    let [least, most] = ratios.fold([f64::INFINITY, 0.0], |[least, most], ratio: f64| {
-        [least.min(ratio), most.max(ratio)]
+    let [minimum, maximum] = ratios.fold([f64::INFINITY, 0.0], |[minimum, maximum], ratio: f64| {
+        [minimum.min(ratio), maximum.max(ratio)]
     });
-    (least > 0.0 && most - least <= SAME * most).then_some(most.min(1.0))
+    (minimum > 0.0 && maximum - minimum <= SAME * maximum).then_some(maximum.min(1.0))
 }
 
 estimators! {

@@ -36,7 +36,7 @@ pub struct InSlab<'a, S> {
     weighing: Weighing,
     scores_all: bool,
     /// The distribution of the hero, if one is chosen.
-    law: Option<HeroDistribution>,
+    distribution: Option<HeroDistribution>,
     /// `1/σ̂` of each channel.
     mean_free_paths: [f64; MAX_CHANNELS],
 }
@@ -60,10 +60,10 @@ impl<'a, S: WalkEvents> InSlab<'a, S> {
         }
         let media = Media::new(setup, &probabilities);
         let albedos = &problem.colours.albedos;
-        let law = walker.heroes().map(|heroes| HeroDistribution::new(heroes, count));
+        let distribution = walker.heroes().map(|heroes| HeroDistribution::new(heroes, count));
         let among = Scatterers { media, albedos, phases, walker, steps };
         let support = setup.residual().mesh.support();
-        Self { setup, support, among, weighing, scores_all, law, mean_free_paths }
+        Self { setup, support, among, weighing, scores_all, distribution, mean_free_paths }
     }
 }
 
@@ -123,8 +123,8 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
     ) {
         let Scatterers { media, albedos, .. } = &self.among;
         let (zero, count) = (one.each(0.0), media.count);
-        let hero = match &self.law {
-            Some(law) => law.choose(random.uniform_where(which)),
+        let hero = match &self.distribution {
+            Some(distribution) => distribution.choose(random.uniform_where(which)),
             None => zero,
         };
         path.hero.keep_where(which, hero);
@@ -218,27 +218,27 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
     fn score<L: Lane>(&self, numbers: &[L], left: L::Mask, lookups: L, values: &mut [L]) -> L {
         let (media, zero) = (&self.among.media, lookups.each(0.0));
         let [hero, cosine, mut length, last] = [numbers[0], numbers[1], numbers[2], numbers[3]];
-        let (mut found, mut defect) = ([zero; MAX_CHANNELS], zero);
-        let found = &mut found[..media.count];
+        let (mut actual, mut defect) = ([zero; MAX_CHANNELS], zero);
+        let actual = &mut actual[..media.count];
         if self.scores_all {
-            for (channel, found) in found.iter_mut().enumerate() {
-                *found = numbers[4 + channel];
+            for (channel, actual) in actual.iter_mut().enumerate() {
+                *actual = numbers[4 + channel];
             }
             if self.weighing.last_piece != LastPiece::Everywhere {
                 length = length - last;
             }
-            media.common(hero, [length, lookups], found);
+            media.common(hero, [length, lookups], actual);
             if matches!(self.among.walker, Walker::Mis(_)) {
-                let off = media.balance(self.weighing.missing, found);
+                let off = media.balance(self.weighing.missing, actual);
                 defect = L::select(left, off, zero);
             }
         } else {
-            media.alone(hero, found);
+            media.alone(hero, actual);
         }
         let is_down = zero.below(cosine);
         for (number, &(end, channel)) in self.setup.problem.colours.seen.iter().enumerate() {
             let there = if end == End::Transmitted { is_down } else { !is_down };
-            values[number] = L::select(left & there, found[channel], zero).sealed();
+            values[number] = L::select(left & there, actual[channel], zero).sealed();
         }
         defect
     }

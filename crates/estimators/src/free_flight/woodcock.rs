@@ -111,10 +111,10 @@ impl Walk for Flights {
         &self,
         _: &mut Flight<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        met.inside & !met.number.below(met.ratio())
+        extinctions.inside & !extinctions.number.below(extinctions.ratio())
     }
 
     #[inline(always)]

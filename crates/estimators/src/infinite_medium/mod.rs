@@ -48,8 +48,8 @@ impl Walked for InfiniteMedium {
         }
         let limit = particle.rule.limits(albedo)[1];
         if ratio > limit * (1.0 + 1e-12) {
-            let found = format!("σ_t is {ratio:.6} times σ̂");
-            return Err(Refusal::mismatch(inequality(particle.rule.range()), found));
+            let actual = format!("σ_t is {ratio:.6} times σ̂");
+            return Err(Refusal::mismatch(inequality(particle.rule.range()), actual));
         }
         let ends = matches!(particle.rule, Terminating | Analog);
         if !ends && particle.roulette.is_none() {

@@ -37,8 +37,8 @@ impl Walked for Lambertian {
         let (walks, has) = channels(setup, particle);
         if has.white && predict::held(&setup.problem).is_none() {
             let needs = "a volume whose ∫σ_t dV is known to 1e-3";
-            let found = "cubature over its chords does not settle, or it is empty";
-            return Err(Refusal::mismatch(needs, found));
+            let actual = "cubature over its chords does not settle, or it is empty";
+            return Err(Refusal::mismatch(needs, actual));
         }
         if has.any() { Ok(()) } else { space::bounded(&walks) }
     }

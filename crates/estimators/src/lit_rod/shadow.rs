@@ -46,7 +46,7 @@ kept! {
         /// The density of its direction, relative to that of the technique.
         pub density: L,
         /// t̂, its transmittance so far.
-        pub found: L,
+        pub lit: L,
     }
 }
 
@@ -54,7 +54,7 @@ impl<L: Lane> ShadowRays<L> {
     /// No shadow ray.
     #[inline(always)]
     pub fn none(one: L) -> Self {
-        Self { casts: one.below(one), density: one, found: one }
+        Self { casts: one.below(one), density: one, lit: one }
     }
 
     /// Casts shadow rays of the lanes in `which` from the positions of their walks.
@@ -63,7 +63,7 @@ impl<L: Lane> ShadowRays<L> {
         route.mark_where(which);
         self.casts |= which;
         self.density.set_where(which, density);
-        self.found.set_where(which, density.each(1.0));
+        self.lit.set_where(which, density.each(1.0));
     }
 
     /// Handles shadow rays at a collision or behind the medium; returns the lanes with rays that end.
@@ -72,22 +72,22 @@ impl<L: Lane> ShadowRays<L> {
         &mut self,
         techniques: Techniques,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         score: &mut L,
     ) -> L::Mask {
         let (TentativeCollision { inside, number, .. }, ratio, casts) =
-            (*met, met.ratio(), self.casts);
+            (*extinctions, extinctions.ratio(), self.casts);
         if !matches!(techniques.shadow, Some(Shadow::Delta | Shadow::Ratio)) {
             return casts;
         }
         let mut ends = casts & !inside;
         if ends.any() {
-            score.add_where(ends, techniques.of_shadow_ray(self.density, self.found));
+            score.add_where(ends, techniques.of_shadow_ray(self.density, self.lit));
         }
         if techniques.shadow == Some(Shadow::Delta) {
             ends |= casts & inside & number.below(ratio);
         } else {
-            self.found.scale_where(casts & inside, ratio.one_minus());
+            self.lit.scale_where(casts & inside, ratio.one_minus());
         }
         route.return_where(ends);
         self.casts &= !ends;

@@ -124,10 +124,10 @@ impl Walk for ToEmitter<'_> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        self.collide_among(&self.rod, path, route, met, random)
+        self.collide_among(&self.rod, path, route, extinctions, random)
     }
 
     #[inline(always)]
@@ -144,16 +144,16 @@ impl ToEmitter<'_> {
         among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (rays, walks) = (path.shadow.casts, !path.shadow.casts);
-        let (mut goes_on, albedo) = (rays, among.albedo(met.t));
+        let (mut goes_on, albedo) = (rays, among.albedo(extinctions.t));
         if rays.maybe() {
-            path.shadow.track(self.techniques, route, met, &mut path.score);
+            path.shadow.track(self.techniques, route, extinctions, &mut path.score);
         }
         if walks.maybe() {
-            goes_on |= self.step(among, path, route, (met, albedo), walks, random);
+            goes_on |= self.step(among, path, route, (extinctions, albedo), walks, random);
         }
         goes_on
     }
@@ -165,11 +165,12 @@ impl ToEmitter<'_> {
         among: &impl Scatterers<L>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        (met, albedo): (&TentativeCollision<L>, L),
+        (extinctions, albedo): (&TentativeCollision<L>, L),
         walks: L::Mask,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, t, number, .. }, real) = (*met, met.ratio());
+        let (TentativeCollision { inside, t, number, .. }, real) =
+            (*extinctions, extinctions.ratio());
         let hits = walks & !inside & path.is_forward;
         if hits.maybe() {
             let of_hit = self.techniques.of_hit(path.ratio);

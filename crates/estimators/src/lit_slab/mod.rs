@@ -21,9 +21,9 @@ impl Lit for LitSlab {
             return Err(Refusal::mismatch("an albedo above 0", "a = 0: nothing is scattered"));
         }
         if !problem.light.can_be_hit() && techniques.combination == Combination::Unidirectional {
-            let found =
+            let actual =
                 "no direction that is drawn meets this one: unidirectional tracking finds nothing";
-            return Err(Refusal::mismatch("a light with a size", found));
+            return Err(Refusal::mismatch("a light with a size", actual));
         }
         setup.residual().require_few_collisions("∫σ̂ ≤ 1e6")?;
         setup

@@ -101,10 +101,11 @@ impl Walk for ToLight<'_> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, t, number, .. }, real) = (*met, met.ratio());
+        let (TentativeCollision { inside, t, number, .. }, real) =
+            (*extinctions, extinctions.ratio());
         let (casts, seeks) = (path.shadow.casts, path.seeks);
         let albedo = t.each(self.slab.albedo);
         let probabilities = ParticleRule::Analog.probabilities(real, albedo);
@@ -118,7 +119,7 @@ impl Walk for ToLight<'_> {
             path.ratio.scale_where(path.seeks, real.one_minus());
         }
         if casts.any() {
-            let ends = path.shadow.track(self.techniques, route, met, &mut path.score);
+            let ends = path.shadow.track(self.techniques, route, extinctions, &mut path.score);
             path.seeks |= ends & path.meets;
             path.cosine.set_where(ends, path.drawn);
         }
@@ -156,8 +157,8 @@ impl ToLight<'_> {
             density = phase.value(cosine) * spread;
             slant = cosine;
             if is_exact {
-                let found = self.before.transmittance(t, slant, scattered);
-                path.score.add_where(scattered, techniques.of_shadow_ray(density, found));
+                let lit = self.before.transmittance(t, slant, scattered);
+                path.score.add_where(scattered, techniques.of_shadow_ray(density, lit));
             }
         }
         if techniques.has_hits() {
@@ -165,11 +166,11 @@ impl ToLight<'_> {
             let meets = scattered & light.is_met(drawn, before);
             if techniques.shadow.is_some() && meets.any() {
                 let spread = light.spread(drawn, before);
-                let mut found = t.each(0.0);
+                let mut lit = t.each(0.0);
                 if is_exact {
-                    found = self.before.transmittance(t, drawn, meets);
+                    lit = self.before.transmittance(t, drawn, meets);
                 }
-                path.ratio.set_where(meets, techniques.ratio(phase.value(drawn) * spread, found));
+                path.ratio.set_where(meets, techniques.ratio(phase.value(drawn) * spread, lit));
             }
             path.drawn.set_where(scattered, drawn);
             path.meets = (path.meets & !scattered) | meets;

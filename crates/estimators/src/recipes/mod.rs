@@ -30,29 +30,29 @@ pub struct Site<'a> {
 #[non_exhaustive]
 pub enum Refusal {
     /// An inequality that the estimator needs does not hold.
-    #[error("needs {needs}, but {found} at t = {}", rounded(*at))]
+    #[error("needs {needs}, but {actual} at t = {}", rounded(*at))]
     Inequality {
         /// Inequality that must hold everywhere, in words.
         needs: Cow<'static, str>,
         /// Values that violate it, in words.
-        found: String,
+        actual: String,
         /// Distance along the ray at which they were found.
         at: f64,
     },
     /// The estimator does not fit what it was given.
-    #[error("needs {needs}, but {found}")]
+    #[error("needs {needs}, but {actual}")]
     Mismatch {
         /// Input that the estimator takes, in words.
         needs: Cow<'static, str>,
         /// Input that it was given, in words.
-        found: String,
+        actual: String,
     },
 }
 
 impl Refusal {
     /// A mismatch in words.
-    pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
-        Self::Mismatch { needs: needs.into(), found: found.into() }
+    pub fn mismatch(needs: &'static str, actual: impl Into<String>) -> Self {
+        Self::Mismatch { needs: needs.into(), actual: actual.into() }
     }
 }
 

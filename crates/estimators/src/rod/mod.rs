@@ -57,7 +57,7 @@ impl ByRule for Rod {
             Ok(()) => Ok(()),
             Err(NoVariance::Diverges(at)) => Err(Refusal::Inequality {
                 needs: needs.into(),
-                found: "σ̂ is so far below σ_t that E[X²] diverges: the critical length ends"
+                actual: "σ̂ is so far below σ_t that E[X²] diverges: the critical length ends"
                     .to_owned(),
                 at,
             }),

@@ -75,12 +75,13 @@ impl Walk for InRod<'_> {
         &self,
         particle: &mut Particle<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         rng: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, t, number, .. }, ratio) = (*met, met.ratio());
+        let (TentativeCollision { inside, t, number, .. }, ratio) =
+            (*extinctions, extinctions.ratio());
         let albedo = self.rod.albedo.value(t);
-        self.score(particle, met, albedo);
+        self.score(particle, extinctions, albedo);
         let probabilities = self.steps.rule.probabilities(ratio, albedo);
         let (scattered, straight_on) = probabilities.decide_each(inside, number);
         if scattered.maybe() {
@@ -118,9 +119,14 @@ impl Walk for InRod<'_> {
 impl InRod<'_> {
     /// Scores a tentative collision, before its event is decided.
     #[inline(always)]
-    fn score<L: Lane>(&self, particle: &mut Particle<L>, met: &TentativeCollision<L>, albedo: L) {
-        let TentativeCollision { inside, t, mean_free_path, .. } = *met;
-        let (weight, ratio) = (particle.weight, met.ratio());
+    fn score<L: Lane>(
+        &self,
+        particle: &mut Particle<L>,
+        extinctions: &TentativeCollision<L>,
+        albedo: L,
+    ) {
+        let TentativeCollision { inside, t, mean_free_path, .. } = *extinctions;
+        let (weight, ratio) = (particle.weight, extinctions.ratio());
         particle.absorbed.add_where(inside, weight * ratio * albedo.one_minus());
         if self.rod.parts > 0 {
             let width = self.rod.width();

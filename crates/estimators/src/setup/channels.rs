@@ -38,7 +38,7 @@ impl ChannelFields {
     fn new(channel: usize, part: ChannelPart) -> Result<Self, Refusal> {
         let takes_none = part.1.is_none();
         let Line { mesh, sampling } = Line::new(part);
-        let refused = |found| Err(Refusal::mismatch("a constant σ̂ > 0 in each channel", found));
+        let refused = |actual| Err(Refusal::mismatch("a constant σ̂ > 0 in each channel", actual));
         let Some(majorant) = sampling.single_value() else {
             return refused(format!("that of channel {channel} varies along the ray"));
         };
@@ -47,8 +47,8 @@ impl ChannelFields {
         }
         let collisions = majorant * mesh.support().length();
         if collisions.is_nan() || collisions > MAX_COLLISIONS {
-            let found = format!("∫σ̂ = {collisions:e} in channel {channel}");
-            return Err(Refusal::mismatch("∫σ̂ ≤ 1e6 in each channel", found));
+            let actual = format!("∫σ̂ = {collisions:e} in channel {channel}");
+            return Err(Refusal::mismatch("∫σ̂ ≤ 1e6 in each channel", actual));
         }
         Ok(Self { mesh, sampling, majorant, ln_majorant: Lane::ln(majorant), collisions })
     }
@@ -81,8 +81,8 @@ pub fn require_common(channels: &[ChannelFields]) -> Result<(), Refusal> {
     let first = channels[0].majorant;
     let other = channels.iter().find(|channel| channel.majorant != first);
     other.map_or(Ok(()), |other| {
-        let found = format!("σ̂ = {} and {}", rounded(first), rounded(other.majorant));
-        Err(Refusal::mismatch("one σ̂ for all channels", found))
+        let actual = format!("σ̂ = {} and {}", rounded(first), rounded(other.majorant));
+        Err(Refusal::mismatch("one σ̂ for all channels", actual))
     })
 }
 
@@ -98,7 +98,7 @@ pub fn require_majorants(channels: &[ChannelFields]) -> Result<(), Refusal> {
             let [majorant, sigma] = [channel.majorant, sigma].map(rounded);
             return Err(Refusal::Inequality {
                 needs: "σ̂ ≥ σ_t in each channel".into(),
-                found: format!("σ̂ = {majorant} and σ_t = {sigma} in channel {number}"),
+                actual: format!("σ̂ = {majorant} and σ_t = {sigma} in channel {number}"),
                 at,
             });
         }
@@ -155,8 +155,8 @@ impl Room<'_> {
     /// Ratio of the hero's share to the largest share of all channels; 1 where all are 0.
     fn beside(&self, channels: &[ChannelFields], number: usize, t: f64) -> f64 {
         let share = |channel: &ChannelFields| (self.share)(channel, t);
-        let most = channels.iter().map(share).fold(0.0, f64::max);
-        if most > self.none { share(&channels[number]) / most } else { 1.0 }
+        let maximum = channels.iter().map(share).fold(0.0, f64::max);
+        if maximum > self.none { share(&channels[number]) / maximum } else { 1.0 }
     }
 
     fn require(&self, channels: &[ChannelFields], number: usize) -> Result<(), Refusal> {
@@ -171,15 +171,16 @@ impl Room<'_> {
         });
         let number = number + 1;
         if let Some(panel) = missing {
-            let found =
+            let actual =
                 format!("{stretch} in channel {number} on a stretch, which biases the others,");
             let needs = (*needs).into();
-            return Err(Refusal::Inequality { needs, found, at: panel.span.from });
+            return Err(Refusal::Inequality { needs, actual, at: panel.span.from });
         }
-        let touches = cut.peaks(&|t| -beside(t)).into_iter().find(|&(_, found)| -found <= TOUCHES);
+        let touches =
+            cut.peaks(&|t| -beside(t)).into_iter().find(|&(_, actual)| -actual <= TOUCHES);
         if let Some((at, _)) = touches {
-            let found = format!("{touch} in channel {number}: E[X²] is infinite");
-            return Err(Refusal::Inequality { needs: "a finite variance".into(), found, at });
+            let actual = format!("{touch} in channel {number}: E[X²] is infinite");
+            return Err(Refusal::Inequality { needs: "a finite variance".into(), actual, at });
         }
         Ok(())
     }

@@ -73,8 +73,8 @@ impl Heroes {
         match self {
             Self::Given(given) if given.len() != count => {
                 let needs = "one hero probability for each channel";
-                let found = format!("there are {} for {count} channels", given.len());
-                Err(Refusal::mismatch(needs, found))
+                let actual = format!("there are {} for {count} channels", given.len());
+                Err(Refusal::mismatch(needs, actual))
             }
             _ => Ok(()),
         }

@@ -140,13 +140,13 @@ impl ControlledLine {
             let middle = 0.5 * (few + many);
             if rarity(middle) < NEVER { few = middle } else { many = middle }
         }
-        let most = many.ceil();
-        if self.control_transmittance().ln() + most * largest.ln() <= LARGEST_WEIGHT {
+        let maximum = many.ceil();
+        if self.control_transmittance().ln() + maximum * largest.ln() <= LARGEST_WEIGHT {
             return Ok(());
         }
         let needs = "weights that stay below 1e304";
-        let found = format!("{most} collisions may multiply them by {largest:.3e} each");
-        Err(Refusal::mismatch(needs, found))
+        let actual = format!("{maximum} collisions may multiply them by {largest:.3e} each");
+        Err(Refusal::mismatch(needs, actual))
     }
 }
 
@@ -191,8 +191,8 @@ impl<P: Problem> Fields<P> for ControlledLine {
         let needs = "draws between 1e-300 and 1e300 times T";
         let control = self.control.optical_depth(self.mesh.support()).value;
         let [whole, control] = [self.log_unit, control].map(rounded);
-        let found = format!("τ = {whole}, of which the control takes {control}");
-        Err(Refusal::mismatch(needs, found))
+        let actual = format!("τ = {whole}, of which the control takes {control}");
+        Err(Refusal::mismatch(needs, actual))
     }
 }
 

@@ -73,7 +73,7 @@ impl Residual<'_> {
             None => Ok(()),
             Some((at, size)) => Err(Refusal::Inequality {
                 needs: "σ̂ > 0 wherever the residual is not zero".into(),
-                found: format!("σ̂ = 0 while |{}| = {}", self.name(), rounded(size)),
+                actual: format!("σ̂ = 0 while |{}| = {}", self.name(), rounded(size)),
                 at,
             }),
         }
@@ -112,7 +112,7 @@ impl Residual<'_> {
         match worst {
             Some((at, deficit)) if deficit > SLACK * scale => Err(Refusal::Inequality {
                 needs: needs.into(),
-                found: format!("{} = {}", self.name(), rounded(-deficit)),
+                actual: format!("{} = {}", self.name(), rounded(-deficit)),
                 at,
             }),
             _ => Ok(()),
@@ -155,8 +155,8 @@ impl Residual<'_> {
                 let name = self.name();
                 let ratio = excess * limit(at);
                 let [flown, residual, shown] = [sampling, ratio * sampling, ratio].map(rounded);
-                let found = format!("σ̂ = {flown} and {name} = {residual}, r = {shown},");
-                Err(Refusal::Inequality { needs: needs.into(), found, at })
+                let actual = format!("σ̂ = {flown} and {name} = {residual}, r = {shown},");
+                Err(Refusal::Inequality { needs: needs.into(), actual, at })
             }
             _ => Ok(()),
         }

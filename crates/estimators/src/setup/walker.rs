@@ -119,8 +119,8 @@ impl Walker {
         let other = phases.iter().find(|phase| **phase != phases[0]);
         match (self, other) {
             (Self::SpectralTracking(_), Some(other)) => {
-                let found = format!("{} and {}", phases[0].label(), other.label());
-                Err(Refusal::mismatch("one phase function for all channels", found))
+                let actual = format!("{} and {}", phases[0].label(), other.label());
+                Err(Refusal::mismatch("one phase function for all channels", actual))
             }
             _ => Ok(()),
         }
@@ -142,8 +142,8 @@ impl Walker {
                 let heroes = heroes.of(phases.len());
                 heroes.into_iter().enumerate().map(|(hero, w)| (w, Proposal::Hero(hero))).collect()
             }
-            Self::SpectralTracking(Chances::Fixed(chance)) => {
-                vec![(1.0, Proposal::Together(*chance))]
+            Self::SpectralTracking(Chances::Fixed(probability)) => {
+                vec![(1.0, Proposal::Together(*probability))]
             }
             // Not needed: these walks are bounded as multiple importance sampling is.
             Self::SpectralTracking(Chances::History) => {
@@ -166,8 +166,8 @@ impl Walker {
                 Proposal::Hero(hero) => format!("walks of hero {}", hero + 1),
                 Proposal::Together(_) => "walks".into(),
             };
-            let found = format!("{walks} {times} in channel {}", channel + 1);
-            Refusal::mismatch("a second moment that theory bounds", found)
+            let actual = format!("{walks} {times} in channel {}", channel + 1);
+            Refusal::mismatch("a second moment that theory bounds", actual)
         })
     }
 }

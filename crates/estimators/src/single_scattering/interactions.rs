@@ -93,15 +93,16 @@ impl<const RESAMPLED: bool> Walk for Interactions<'_, RESAMPLED> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, t, extinction, .. }, zero) = (*met, met.t.each(0.0));
+        let (TentativeCollision { inside, t, extinction, .. }, zero) =
+            (*extinctions, extinctions.t.each(0.0));
         let left = path.flies & !inside;
         path.walks &= !left;
         let (mut aims, mut ends) = (left & !left, left);
         if inside.maybe() {
-            aims = self.choose(path, &route.here, met, random);
+            aims = self.choose(path, &route.here, extinctions, random);
             let kept = self.ground.kept(&route.here, t, extinction);
             path.weight.scale_where(inside, kept);
         }
@@ -110,7 +111,7 @@ impl<const RESAMPLED: bool> Walk for Interactions<'_, RESAMPLED> {
             aims = left & !ends;
         }
         let at = (aims, path.s);
-        let (lit, light) = path.to_light.collide(&self.ground, met, at, 1, random);
+        let (lit, light) = path.to_light.collide(&self.ground, extinctions, at, 1, random);
         if lit.any() && RESAMPLED {
             // The draw is the score of its only point, its sign included where it is 0.
             path.score.set_where(lit, path.sum.with_sign_of(path.worth) * light);
@@ -131,10 +132,10 @@ impl<const RESAMPLED: bool> Interactions<'_, RESAMPLED> {
         &self,
         path: &mut Path<L>,
         here: &impl PackedFlight<L>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let TentativeCollision { inside, t, extinction, .. } = *met;
+        let TentativeCollision { inside, t, extinction, .. } = *extinctions;
         let source = extinction * self.ground.setup.problem.source(t) / here.sampling();
         let worth = path.weight * self.ground.controlled(t) * source;
         let mut chosen = inside & t.each(0.0).below(extinction);

@@ -86,9 +86,9 @@ impl<'a> MainPart<'a> {
 pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
     let needs = "a control of straight pieces, as `explorers`, `mean` or `constant`";
     let Control::Pieces(pieces) = &setup.fields.control else {
-        let found =
+        let actual =
             if setup.fields.control.is_none() { "there is none" } else { "it is another field" };
-        return Err(Refusal::mismatch(needs, found));
+        return Err(Refusal::mismatch(needs, actual));
     };
     let (lowest, highest) = pieces
         .corner_values()
@@ -131,7 +131,7 @@ pub fn require(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
     as_sampling.require_coverage().map_err(|refusal| match refusal {
         Refusal::Inequality { at, .. } => Refusal::Inequality {
             needs: "a control σ_m > 0 wherever σ_t > 0".into(),
-            found: "σ_m = 0 while σ_t is not".into(),
+            actual: "σ_m = 0 while σ_t is not".into(),
             at,
         },
         other => other,

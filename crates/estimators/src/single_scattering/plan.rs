@@ -87,8 +87,8 @@ impl Vertices {
         let scene = &scene(setup, self.camera, shadow);
         let (collisions, heuristic) = (absorption.collisions(setup), self.heuristic);
         let [first, second] = Mis { scene, collisions, heuristic, nulls }.points();
-        let found = if self.is_one { first.either(&second) } else { first.plus(&second) };
-        found.prediction()
+        let actual = if self.is_one { first.either(&second) } else { first.plus(&second) };
+        actual.prediction()
     }
 
     /// The moments of points from the light, from the main part, or from both.
@@ -107,7 +107,7 @@ impl Vertices {
                 density,
                 gain: &|node| node.extinction * node.source / sum(node),
                 blur: &|node| main.map_or(DENSITY, |main| main.blur(node.s)),
-                found: None,
+                by_collisions: None,
                 weighted: None,
             };
             TechniqueMoments::of(&scene, &technique, kinks())

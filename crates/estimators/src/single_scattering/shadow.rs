@@ -90,17 +90,17 @@ impl<L: Lane> ToLight<L> {
     pub fn collide(
         &mut self,
         ground: &RaySetup,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         (aims, s): (L::Mask, L),
         enough: u32,
         random: &mut impl Random<L>,
     ) -> (L::Mask, L) {
         let (none, one) = (aims & !aims, s.each(1.0));
         let rays = ground.rays;
-        let mut found = (none, one);
+        let mut actual = (none, one);
         if rays.tracking != Tracking::Exact && self.casts.maybe() {
             let at = (self.place, self.inside & self.casts);
-            found = self.shadows.collide(rays, random, at, met.in_space[0]);
+            actual = self.shadows.collide(rays, random, at, extinctions.in_space[0]);
         }
         self.aims |= aims;
         if self.aims.are_enough(TOGETHER) {
@@ -114,10 +114,10 @@ impl<L: Lane> ToLight<L> {
             let ((which, light), _) =
                 self.shadows.cast(through, casts, &light, (origin, one), ends);
             // Light of rays that were cast before, and light that is found at once.
-            found = (found.0 | which, L::select(which, light, found.1));
+            actual = (actual.0 | which, L::select(which, light, actual.1));
         }
-        self.lit |= found.0;
-        self.light.set_where(found.0, found.1);
+        self.lit |= actual.0;
+        self.light.set_where(actual.0, actual.1);
         if !self.lit.are_enough(enough) {
             return (none, self.light);
         }

@@ -161,11 +161,11 @@ impl Walk for Shared<'_> {
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (TentativeCollision { t, extinction, .. }, problem) =
-            (*met, &*self.ground.setup.problem);
+            (*extinctions, &*self.ground.setup.problem);
         let Path { is_point, is_interaction, .. } = *path;
         let mut aims = is_point;
         if is_point.any() {
@@ -183,7 +183,7 @@ impl Walk for Shared<'_> {
         path.pending &= !(is_interaction | ends);
         path.walks &= !ends;
         let at = (aims, path.s);
-        let (lit, light) = path.to_light.collide(&self.ground, met, at, 1, random);
+        let (lit, light) = path.to_light.collide(&self.ground, extinctions, at, 1, random);
         if lit.any() {
             path.score.add_where(lit, path.worth * light);
         }

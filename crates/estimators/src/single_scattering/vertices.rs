@@ -176,10 +176,10 @@ impl<'a, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, CHOSEN, COLLID
         &self,
         path: &mut Path<L>,
         here: &impl BothWays<L>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         inside: L::Mask,
     ) -> [L::Mask; 2] {
-        let TentativeCollision { t, number, extinction, .. } = *met;
+        let TentativeCollision { t, number, extinction, .. } = *extinctions;
         let (chosen, left) = (Self::chosen(path), path.flies & !inside);
         let threshold = number * here.sampling();
         let real = inside & !chosen & threshold.below(extinction);
@@ -200,11 +200,11 @@ impl<'a, const CHOSEN: bool, const COLLIDES: bool> ToVertices<'a, CHOSEN, COLLID
         &self,
         path: &mut Path<L>,
         here: &impl BothWays<L>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         inside: L::Mask,
         random: &mut impl Random<L>,
     ) -> [L::Mask; 2] {
-        let TentativeCollision { t, extinction, .. } = *met;
+        let TentativeCollision { t, extinction, .. } = *extinctions;
         let arrives = path.flies & !inside;
         let mut ends = inside & !inside;
         if self.plan.camera == CameraTracking::Delta {
@@ -345,25 +345,25 @@ impl<const CHOSEN: bool, const COLLIDES: bool> Walk for ToVertices<'_, CHOSEN, C
         &self,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let looked = path.looks;
-        let (none, inside) = (looked & !looked, met.inside & !looked);
+        let (none, inside) = (looked & !looked, extinctions.inside & !looked);
         let [mut arrives, mut ends] = if COLLIDES {
-            self.track(path, &route.here, met, inside)
+            self.track(path, &route.here, extinctions, inside)
         } else if self.is_tracked() {
-            self.approach(path, &route.here, met, inside, random)
+            self.approach(path, &route.here, extinctions, inside, random)
         } else {
             [none; 2]
         };
-        let mut found = none;
+        let mut actual = none;
         if CHOSEN && looked.any() {
-            let extinction = met.extinction;
+            let extinction = extinctions.extinction;
             let scatters = looked & extinction.each(0.0).below(extinction);
             path.extinction.set_where(looked, extinction);
             path.looks = none;
-            found = looked & !scatters;
+            actual = looked & !scatters;
             if self.is_tracked() {
                 path.sets_out |= scatters;
             } else {
@@ -371,17 +371,18 @@ impl<const CHOSEN: bool, const COLLIDES: bool> Walk for ToVertices<'_, CHOSEN, C
             }
         }
         let at = (arrives, path.s);
-        let (lit, light) = path.to_light.collide(&self.ground, met, at, Self::SCORES, random);
+        let (lit, light) =
+            path.to_light.collide(&self.ground, extinctions, at, Self::SCORES, random);
         if lit.any() {
             self.score(path, lit, light);
-            found |= lit;
+            actual |= lit;
         }
         if CHOSEN && COLLIDES && !self.plan.is_one {
-            let first = found & path.is_chosen;
+            let first = actual & path.is_chosen;
             Self::seek(path, first);
-            found &= !first;
+            actual &= !first;
         }
-        ends |= found;
+        ends |= actual;
         path.done |= ends;
         if !path.done.are_enough(Self::BEGIN) {
             return !none;

@@ -51,7 +51,7 @@ pub fn require_answer(
     channel: &str,
 ) -> Result<(), Refusal> {
     let phase = &incidence.phase;
-    let refused = |needs, found: String| Err(Refusal::mismatch(needs, found + channel));
+    let refused = |needs, actual: String| Err(Refusal::mismatch(needs, actual + channel));
     if albedo > 0.0 && !slab::resolves(phase) {
         let needs = "a phase function that 144 directions resolve, or that peaks forward (Henyey–Greenstein of g ≥ −0.93)";
         return refused(needs, format!("phase {}", phase.label()));
@@ -107,7 +107,7 @@ impl ByRule for Slab {
         let (slab, depth) = (&setup.problem, setup.fields.mesh.optical_depth());
         let ends = [End::Reflected, End::Transmitted];
         require_answer(&slab.incidence, depth, slab.albedo, &ends, "")?;
-        let found = match walk_of(setup, rule).second_moment() {
+        let actual = match walk_of(setup, rule).second_moment() {
             Existence::Finite => return Ok(()),
             Existence::Diverges => {
                 "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them"
@@ -116,7 +116,7 @@ impl ByRule for Slab {
                 "σ̂ is so near to where E[X²] diverges that theory does not tell on which side"
             }
         };
-        Err(Refusal::mismatch("a finite variance", found))
+        Err(Refusal::mismatch("a finite variance", actual))
     }
 
     /// Without an answer its values are NaN, and are refused as such.

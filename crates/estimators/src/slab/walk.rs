@@ -72,10 +72,11 @@ impl Walk for InSlab<'_> {
         &self,
         particle: &mut Particle<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         rng: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, number, .. }, ratio) = (*met, met.ratio());
+        let (TentativeCollision { inside, number, .. }, ratio) =
+            (*extinctions, extinctions.ratio());
         let probabilities = self.rule.probabilities(ratio, ratio.each(self.albedo));
         let (scattered, straight_on) = probabilities.decide_each(inside, number);
         if scattered.maybe() {

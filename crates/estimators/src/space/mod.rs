@@ -50,8 +50,8 @@ pub fn realisable<P: Walked>(setup: &Setup<P>, particle: &ParticleSettings) -> R
     let limit = particle.rule.limits(walks.albedo[1])[1];
     if walks.ratio() > limit {
         let needs = inequality(particle.rule.range());
-        let found = format!("σ_t may reach {:.6} times σ̂ in the volume", walks.ratio());
-        return Err(Refusal::mismatch(needs, found));
+        let actual = format!("σ_t may reach {:.6} times σ̂ in the volume", walks.ratio());
+        return Err(Refusal::mismatch(needs, actual));
     }
     Ok(())
 }
@@ -66,7 +66,7 @@ pub fn bounded(walks: &WalkBound) -> Result<(), Refusal> {
         return Ok(());
     }
     let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
-    let found =
+    let actual =
         format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
-    Err(Refusal::mismatch(needs, found))
+    Err(Refusal::mismatch(needs, actual))
 }

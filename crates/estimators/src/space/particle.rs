@@ -20,8 +20,8 @@ impl Splitting {
     pub fn splits(self, depth: u32, total: u32) -> bool {
         match self {
             Self::None => false,
-            Self::Depth(most) => depth < most,
-            Self::Budget(most) => total < most,
+            Self::Depth(maximum) => depth < maximum,
+            Self::Budget(maximum) => total < maximum,
         }
     }
 }

@@ -26,7 +26,7 @@ pub struct Segment<L: Lane> {
     /// `T̂`, where it is tracked.
     pub transmittance: L,
     /// The probability that all collisions before the end are null.
-    pub chance: L,
+    pub probability: L,
     /// Lookups.
     pub lookups: L,
 }
@@ -83,7 +83,7 @@ impl SampledMedium<'_> {
             segment.lookups.count_where(on);
             segment.transmittance.scale_where(on, ratio.one_minus());
             let probabilities = rule.probabilities(ratio, self.albedo(flown.place, on));
-            segment.chance.scale_where(on, probabilities.transmit);
+            segment.probability.scale_where(on, probabilities.transmit);
         }
         segment
     }
@@ -108,7 +108,7 @@ impl SampledMedium<'_> {
                 place.set_where(collides, flown.place[axis]);
             }
             on &= !collides;
-            segment.chance.scale_where(on, ratio.one_minus());
+            segment.probability.scale_where(on, ratio.one_minus());
         }
         segment
     }
@@ -121,7 +121,8 @@ impl SampledMedium<'_> {
         (flights.origin, flights.direction) = (origin, direction);
         flights.enter(self.ground, which, &self.ground.reach(rays, which));
         let (collided, place) = (which & !which, origin);
-        let segment = Segment { collided, place, transmittance: one, chance: one, lookups: zero };
+        let segment =
+            Segment { collided, place, transmittance: one, probability: one, lookups: zero };
         (flights, segment)
     }
 

@@ -63,7 +63,7 @@ pub trait Tally {
     }
 
     /// The value of walks in a channel.
-    fn value<L: Lane>(&self, found: &Self::Found<L>, channel: usize) -> L;
+    fn value<L: Lane>(&self, totals: &Self::Found<L>, channel: usize) -> L;
 
     /// The places where particles set out, and their directions. Their weight is 1. Only lanes in `which` may take
     /// random numbers.
@@ -71,20 +71,20 @@ pub trait Tally {
 
     /// Adds flights of given lengths and weights.
     #[inline(always)]
-    fn flown<L: Lane>(&self, found: &mut Self::Found<L>, length: L, weight: L) {
-        let _ = (found, length, weight);
+    fn flown<L: Lane>(&self, totals: &mut Self::Found<L>, length: L, weight: L) {
+        let _ = (totals, length, weight);
     }
 
     /// Adds tentative collisions.
     #[inline(always)]
-    fn collided<L: Lane>(&self, found: &mut Self::Found<L>, at: &CollisionTally<L>) {
-        let _ = (found, at);
+    fn collided<L: Lane>(&self, totals: &mut Self::Found<L>, at: &CollisionTally<L>) {
+        let _ = (totals, at);
     }
 
     /// Adds particles that leave.
     #[inline(always)]
-    fn escaped<L: Lane>(&self, found: &mut Self::Found<L>, at: &Departure<L>) {
-        let _ = (found, at);
+    fn escaped<L: Lane>(&self, totals: &mut Self::Found<L>, at: &Departure<L>) {
+        let _ = (totals, at);
     }
 
     /// A black ball that absorbs every particle that reaches it: centre and radius.
@@ -130,14 +130,14 @@ pub trait Tally {
 
     /// Adds scatterings at places of the lanes in `which`, or beginnings as if they were scattered.
     #[inline(always)]
-    fn scattered<L: Lane>(&self, found: &mut Self::Found<L>, which: L::Mask, place: [L; 3]) {
-        let _ = (found, which, place);
+    fn scattered<L: Lane>(&self, totals: &mut Self::Found<L>, which: L::Mask, place: [L; 3]) {
+        let _ = (totals, which, place);
     }
 
     /// Adds light that shadow rays have found, by its transmittance.
     #[inline(always)]
-    fn lit<L: Lane>(&self, found: &mut Self::Found<L>, light: LitLanes<L>, through: L) {
-        let _ = (found, light, through);
+    fn lit<L: Lane>(&self, totals: &mut Self::Found<L>, light: LitLanes<L>, through: L) {
+        let _ = (totals, light, through);
     }
 
     /// Casts shadow rays to a light, if there are no [`Tally::shadow_rays`]; returns the number of lookups. Their
@@ -145,12 +145,12 @@ pub trait Tally {
     #[inline(always)]
     fn track<L: Lane>(
         &self,
-        found: &mut Self::Found<L>,
+        totals: &mut Self::Found<L>,
         at: &Scattering<L>,
         (light, ends): (&VisibleLight<L>, [L; 2]),
         random: &mut impl Random<L>,
     ) -> L {
-        let _ = (found, light, ends, random);
+        let _ = (totals, light, ends, random);
         at.weight.each(0.0)
     }
 
@@ -158,11 +158,11 @@ pub trait Tally {
     #[inline(always)]
     fn connect<L: Lane>(
         &self,
-        found: &mut Self::Found<L>,
+        totals: &mut Self::Found<L>,
         at: &Scattering<L>,
         random: &mut impl Random<L>,
     ) -> L {
-        let _ = (found, random);
+        let _ = (totals, random);
         at.weight.each(0.0)
     }
 }

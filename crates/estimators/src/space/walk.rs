@@ -50,7 +50,7 @@ kept! {
         /// The particles.
         pub path: Path<L>,
         /// Sums and state of their tallies.
-        pub found: F,
+        pub totals: F,
         /// Lookups that needed no step.
         known: L,
         shadows: Shadows<L>,
@@ -143,7 +143,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
         let flown = state.path.flights.fly(&self.ground, walks, depth, sampling);
         (state.inside, state.place, state.sampling) = (flown.inside, origin, flown.sampling);
         state.place.set_where(walks, flown.place);
-        self.tally.flown(&mut state.found, flown.length, state.path.weight);
+        self.tally.flown(&mut state.totals, flown.length, state.path.weight);
         if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
             let (reached, inside) = state.shadows.fly(rays, origin, depth);
             state.place.set_where(state.shadows.on, reached);
@@ -169,16 +169,16 @@ impl<'a, T: Tally> InSpace<'a, T> {
         let casts = state.shadows.on;
         if let (true, Some(rays)) = (T::CASTS, &self.shadow_rays) {
             let light = state.shadows.collide(rays, random, (place, casts & inside), extinction);
-            self.tally.lit(&mut state.found, light, state.shadows.through);
+            self.tally.lit(&mut state.totals, light, state.shadows.through);
             state.lit = light.0;
         }
         let walks = !(casts | Self::waits(state));
         let (inside, left) = (inside & walks, walks & !inside);
         let Path { weight, unscattered, flights: Flights { direction, .. } } = state.path;
         let at = CollisionTally { inside, place, weight, ratio: extinction / sampling, albedo };
-        self.tally.collided(&mut state.found, &at);
+        self.tally.collided(&mut state.totals, &at);
         let departure = Departure { left, place, direction, weight, unscattered };
-        self.tally.escaped(&mut state.found, &departure);
+        self.tally.escaped(&mut state.totals, &departure);
         state.ended = walks;
         at
     }
@@ -244,7 +244,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
         if T::CONNECTS {
             let weight = state.path.weight;
             let at = Scattering { which: turns & !weight.equals(0.0), place: origin, weight };
-            state.known = state.known + self.tally.connect(&mut state.found, &at, random);
+            state.known = state.known + self.tally.connect(&mut state.totals, &at, random);
         }
         let parallel = if T::CASTS { self.tally.parallel() } else { None };
         let draws = if parallel.is_some() { turns } else { turns | casts };
@@ -262,11 +262,12 @@ impl<'a, T: Tally> InSpace<'a, T> {
             let (light, weight) = (self.tally.light(origin, light), state.path.weight);
             if let Some(rays) = &self.shadow_rays {
                 let (rays, from) = ((rays, self.fields.first()), (origin, weight));
-                let (found, through) = state.shadows.cast(rays, casts, &light, from, reach.ends);
-                self.tally.lit(&mut state.found, found, through);
+                let (totals, through) = state.shadows.cast(rays, casts, &light, from, reach.ends);
+                self.tally.lit(&mut state.totals, totals, through);
             } else {
                 let at = Scattering { which: casts, place: origin, weight };
-                let tracked = self.tally.track(&mut state.found, &at, (&light, reach.ends), random);
+                let tracked =
+                    self.tally.track(&mut state.totals, &at, (&light, reach.ends), random);
                 state.known = state.known + tracked;
             }
             // Lanes with a ray that needed no tracking turn next.
@@ -285,7 +286,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
         state.path.flights.direction.set_where(ended, direction);
         state.path.weight.set_where(ended, one);
         state.path.unscattered |= ended;
-        state.found.set_where(ended, self.tally.nothing(one.each(0.0)));
+        state.totals.set_where(ended, self.tally.nothing(one.each(0.0)));
         state.known.set_where(ended, one.each(0.0));
     }
 
@@ -298,7 +299,7 @@ impl<'a, T: Tally> InSpace<'a, T> {
         let turns = if self.tally.begins_turned() { sets_out } else { state.scattered };
         state.begins |= sets_out & !turns;
         if T::CASTS {
-            self.tally.scattered(&mut state.found, turns, origin);
+            self.tally.scattered(&mut state.totals, turns, origin);
             let is_nothing = weight.equals(0.0);
             state.aims |= turns & !is_nothing;
             state.turns |= (turns & is_nothing) | state.lit;
@@ -362,7 +363,7 @@ impl<T: Tally> Walk for InSpace<'_, T> {
         let (zero, none) = (one.each(0.0), !all);
         State {
             path: Path { flights: Flights::new(zero), weight: one, unscattered: all },
-            found: self.tally.nothing(zero),
+            totals: self.tally.nothing(zero),
             known: zero,
             shadows: Shadows::new(zero),
             inside: none,
@@ -405,10 +406,10 @@ impl<T: Tally> Walk for InSpace<'_, T> {
         &self,
         state: &mut Self::State<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let at = self.score(state, met.in_space, random);
+        let at = self.score(state, extinctions.in_space, random);
         !self.decide(state, &at, random)
     }
 
@@ -448,6 +449,6 @@ impl<T: Tally> Walk for InSpace<'_, T> {
 
     #[inline(always)]
     fn value<L: Lane>(&self, state: &Self::State<L>, _: L::Mask, channel: usize) -> L {
-        self.tally.value(&state.found, channel)
+        self.tally.value(&state.totals, channel)
     }
 }

@@ -31,16 +31,17 @@ fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
     let within = setup.problem.bounds.enclosing_box();
     let channels = setup.fields.iter().zip(&setup.problem.channels);
     for (number, (channel, medium)) in (1..).zip(channels) {
-        let most = within.map_or(f64::INFINITY, |within| medium.volume.majorant(&within));
-        if most > channel.majorant * (1.0 + SLACK) {
-            let [majorant, most] = [channel.majorant, most].map(rounded);
-            let found = format!("σ̂ = {majorant} and σ_t is bounded by {most} in channel {number}");
-            return Err(Refusal::mismatch("σ̂ ≥ σ_t everywhere in the volume", found));
+        let maximum = within.map_or(f64::INFINITY, |within| medium.volume.majorant(&within));
+        if maximum > channel.majorant * (1.0 + SLACK) {
+            let [majorant, maximum] = [channel.majorant, maximum].map(rounded);
+            let actual =
+                format!("σ̂ = {majorant} and σ_t is bounded by {maximum} in channel {number}");
+            return Err(Refusal::mismatch("σ̂ ≥ σ_t everywhere in the volume", actual));
         }
         let collisions = channel.majorant * across;
         if collisions.is_nan() || collisions > MAX_COLLISIONS {
-            let found = format!("it may be {collisions:e} in channel {number}");
-            return Err(Refusal::mismatch("∫σ̂ ≤ 1e4 straight through the volume", found));
+            let actual = format!("it may be {collisions:e} in channel {number}");
+            return Err(Refusal::mismatch("∫σ̂ ≤ 1e4 straight through the volume", actual));
         }
     }
     Ok(())

@@ -39,7 +39,7 @@ pub struct InFurnace<'a, S> {
     weighing: Weighing,
     scores_all: bool,
     /// The distribution of the hero, if one is chosen.
-    law: Option<HeroDistribution>,
+    distribution: Option<HeroDistribution>,
     /// σ_t of each channel for packs.
     fields: &'a [Batches<'a>],
 }
@@ -77,9 +77,9 @@ impl<'a, S: WalkEvents> InFurnace<'a, S> {
         for (channel, own) in problem.channels.iter().enumerate() {
             phases[channel] = own.phase;
         }
-        let law = walker.heroes().map(|heroes| HeroDistribution::new(heroes, count));
+        let distribution = walker.heroes().map(|heroes| HeroDistribution::new(heroes, count));
         let among = Scatterers { media, albedos: &problem.albedos, phases, walker, steps };
-        Self { problem, among, weighing, scores_all, law, fields }
+        Self { problem, among, weighing, scores_all, distribution, fields }
     }
 
     /// The distances to the boundary, where a flight ends beyond it or may do so.
@@ -158,8 +158,8 @@ impl<S: WalkEvents> Walk for InFurnace<'_, S> {
         random: &mut impl Random<L>,
     ) {
         let (Scatterers { media, albedos, .. }, zero) = (&self.among, one.each(0.0));
-        let hero = match &self.law {
-            Some(law) => law.choose(random.uniform_where(which)),
+        let hero = match &self.distribution {
+            Some(distribution) => distribution.choose(random.uniform_where(which)),
             None => zero,
         };
         path.hero.keep_where(which, hero);
@@ -202,11 +202,11 @@ impl<S: WalkEvents> Walk for InFurnace<'_, S> {
         &self,
         path: &mut Path<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (inside, one, hero) = (met.inside, path.length.each(1.0), path.hero);
-        let own = path.densities.look(&self.among, hero, met.in_space);
+        let (inside, one, hero) = (extinctions.inside, path.length.each(1.0), path.hero);
+        let own = path.densities.look(&self.among, hero, extinctions.in_space);
         let probabilities = path.densities.probabilities(&self.among, [own, path.albedo]);
         let [passes, scatters, _] = probabilities;
         let number = random.uniform_where(inside);

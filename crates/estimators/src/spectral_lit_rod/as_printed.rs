@@ -97,15 +97,15 @@ impl WalkEvents for AsPrinted {
     }
 
     #[inline(always)]
-    fn weighing(&self, found: PathTechnique) -> Weighing {
+    fn weighing(&self, light: PathTechnique) -> Weighing {
         let right = Weighing::RIGHT;
-        if found == PathTechnique::Connected {
+        if light == PathTechnique::Connected {
             let is_early = self.has(Error::LastPiece);
             let last_piece = if is_early { LastPiece::Nowhere } else { LastPiece::Everywhere };
             let share = if self.has(Error::Average) { 0.5 } else { 1.0 };
             Weighing { last_piece, share, ..right }
         } else {
-            let has_next_event = found == PathTechnique::Hit && !self.has(Error::HitsAlone);
+            let has_next_event = light == PathTechnique::Hit && !self.has(Error::HitsAlone);
             Weighing { has_next_event, ..right }
         }
     }

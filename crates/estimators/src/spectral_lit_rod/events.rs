@@ -45,8 +45,8 @@ pub trait WalkEvents: Sync {
 
     /// Weighting of paths of a technique.
     #[inline(always)]
-    fn weighing(&self, found: PathTechnique) -> Weighing {
-        let has_next_event = self.has_shadow_rays() && found != PathTechnique::Unscattered;
+    fn weighing(&self, light: PathTechnique) -> Weighing {
+        let has_next_event = self.has_shadow_rays() && light != PathTechnique::Unscattered;
         Weighing { has_next_event, ..Weighing::RIGHT }
     }
 

@@ -66,7 +66,7 @@ impl Independent {
         let techniques = if self.is_full { FULL } else { HITS };
         OfHero {
             walk: ToEmitter::new(rod, end, techniques),
-            law: HeroDistribution::new(&self.heroes, count),
+            distribution: HeroDistribution::new(&self.heroes, count),
             count,
             mean_free_paths,
             probabilities,
@@ -123,7 +123,7 @@ kept! {
 #[derive(Clone, Copy)]
 struct OfHero<'a> {
     walk: ToEmitter<'a>,
-    law: HeroDistribution,
+    distribution: HeroDistribution,
     count: usize,
     mean_free_paths: [f64; MAX_CHANNELS],
     probabilities: [f64; MAX_CHANNELS],
@@ -172,7 +172,7 @@ impl Walk for OfHero<'_> {
         random: &mut impl Random<L>,
     ) {
         self.walk.restart(&mut alone.path, which, one, random);
-        let (hero, count) = (self.law.choose(random.uniform_where(which)), self.count);
+        let (hero, count) = (self.distribution.choose(random.uniform_where(which)), self.count);
         let mean_free_path = number_of_hero(hero, &self.mean_free_paths[..count]);
         alone.hero.set_where(which, hero);
         alone.mean_free_path.set_where(which, mean_free_path);
@@ -199,16 +199,17 @@ impl Walk for OfHero<'_> {
         &self,
         alone: &mut Alone<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (hero, mut albedo) = (alone.hero, met.t);
+        let (hero, mut albedo) = (alone.hero, collided.t);
         for channel in 0..self.count {
-            albedo = or_of_hero(hero, channel, albedo, self.albedos.at(channel, met.t));
+            albedo = or_of_hero(hero, channel, albedo, self.albedos.at(channel, collided.t));
         }
-        let met = TentativeCollision { extinction: of_hero(hero, met.extinctions), ..*met };
+        let collided =
+            TentativeCollision { extinction: of_hero(hero, collided.extinctions), ..*collided };
         let own = Own { albedo, forward: alone.forward };
-        self.walk.collide_among(&own, &mut alone.path, route, &met, random)
+        self.walk.collide_among(&own, &mut alone.path, route, &collided, random)
     }
 
     #[inline(always)]

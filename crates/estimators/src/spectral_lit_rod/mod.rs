@@ -24,8 +24,8 @@ fn realisable(setup: &Setup<SpectralLitRod>, heroes: &Heroes) -> Result<(), Refu
     channels::require_majorants(&setup.fields)?;
     for (number, (channel, rod)) in (1..).zip(setup.fields.iter().zip(&setup.problem.rods)) {
         if !lit::is_within_reach(&channel.mesh, rod, &channel.sampling) {
-            let found = format!("σ̂ or σ_t of channel {number} is too large on it");
-            return Err(Refusal::mismatch("a rod that theory can cut into 5000 panels", found));
+            let actual = format!("σ̂ or σ_t of channel {number} is too large on it");
+            return Err(Refusal::mismatch("a rod that theory can cut into 5000 panels", actual));
         }
     }
     Ok(())

@@ -73,8 +73,8 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
         let turns = |(_, forward): &(usize, &f64)| **forward < 1.0;
         let turns = (1..).zip(&setup.problem.forward).find(turns);
         turns.map_or(Ok(()), |(channel, forward)| {
-            let found = format!("forward = {forward} in channel {channel}");
-            Err(Refusal::mismatch("light that goes on forward", found))
+            let actual = format!("forward = {forward} in channel {channel}");
+            Err(Refusal::mismatch("light that goes on forward", actual))
         })
     }
 
@@ -145,11 +145,11 @@ impl Walk for Together<'_> {
         &self,
         path: &mut Path<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
         let (TentativeCollision { inside, t, extinctions, number, .. }, one) =
-            (*met, met.t.each(1.0));
+            (*collided, collided.t.each(1.0));
         let majorant = one.each(self.majorant);
         for (channel, &extinction) in extinctions.iter().enumerate() {
             let real = extinction / majorant;
@@ -165,10 +165,10 @@ impl Walk for Together<'_> {
             &path.weights,
         );
         let is_real = null.at_most(number);
-        let chance = L::select(is_real, scattered, null);
+        let probability = L::select(is_real, scattered, null);
         for channel in 0..self.count {
             let share = L::select(is_real, path.scattered[channel], path.nulls[channel]);
-            let weight = path.weights[channel] * (share / chance);
+            let weight = path.weights[channel] * (share / probability);
             path.weights[channel].keep_where(inside, weight);
         }
         inside & number.below(null + scattered)

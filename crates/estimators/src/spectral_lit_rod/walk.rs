@@ -49,7 +49,7 @@ pub struct ToEmitter<'a, S> {
     end: f64,
     steps: &'a S,
     media: Media,
-    law: HeroDistribution,
+    distribution: HeroDistribution,
     mean_free_paths: PerChannel,
     albedos: Albedos<'a>,
     /// The probability to keep the direction by channel and hero.
@@ -95,11 +95,11 @@ impl<'a, S: WalkEvents> ToEmitter<'a, S> {
             end: setup.residual().mesh.support().to,
             steps,
             media: Media::new(setup, &probabilities),
-            law: HeroDistribution::new(heroes, count),
+            distribution: HeroDistribution::new(heroes, count),
             mean_free_paths,
             albedos,
             forward,
-            weighings: PathTechnique::ALL.map(|found| steps.weighing(found)),
+            weighings: PathTechnique::ALL.map(|light| steps.weighing(light)),
             casts: steps.has_shadow_rays(),
         }
     }
@@ -127,7 +127,7 @@ kept! {
         scores: L::Mask,
         connected: L::Mask,
         /// Number of the technique if the path arrives, see [`Technique`].
-        found: L,
+        light: L,
         /// The number of each hero, its mean free path, and by channel its probability to keep the direction.
         hero: L,
         mean_free_path: L,
@@ -173,7 +173,7 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
             keeps: all,
             scores: !all,
             connected: !all,
-            found: zero,
+            light: zero,
             hero: zero,
             mean_free_path: one,
             forward: ones,
@@ -215,9 +215,9 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
         }
         path.length.keep_where(which, zero);
         path.collisions.keep_where(which, zero);
-        path.found.keep_where(which, zero);
+        path.light.keep_where(which, zero);
         path.is_forward |= which;
-        let hero = self.law.choose(random.uniform_where(which));
+        let hero = self.distribution.choose(random.uniform_where(which));
         path.hero.keep_where(which, hero);
         self.follow(path, which, hero);
         for channel in 0..count {
@@ -250,10 +250,11 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
         &self,
         path: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, t, extinctions, .. }, count) = (*met, self.media.count);
+        let (TentativeCollision { inside, t, extinctions, .. }, count) =
+            (*collided, self.media.count);
         let (one, casts) = (t.each(1.0), path.casts);
         let number = random.uniform_where(!casts);
         let end = one.each(self.end);
@@ -310,9 +311,9 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
         path: &'a Particle<L>,
         some: &'a mut [L; SOME_LEFT],
     ) -> [&'a [L]; GROUPS] {
-        let found =
-            L::select(path.connected, PathTechnique::Connected.as_lane(path.hero), path.found);
-        *some = [path.hero, path.length, path.collisions, path.last, found];
+        let light =
+            L::select(path.connected, PathTechnique::Connected.as_lane(path.hero), path.light);
+        *some = [path.hero, path.length, path.collisions, path.last, light];
         let (all, gains) = (..self.media.count, if S::GAINS { self.media.count } else { 0 });
         [&some[..], &path.weights[all], &path.phases[all], &path.nulls[all], &path.excess[..gains]]
     }
@@ -320,10 +321,10 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
     #[inline(always)]
     fn score<L: Lane>(&self, numbers: &[L], _: L::Mask, _: L, values: &mut [L]) -> L {
         let (count, zero, one) = (self.media.count, numbers[0].each(0.0), numbers[0].each(1.0));
-        let [hero, length, collisions, last, found, lists @ ..] = numbers else { return zero };
-        let without = self.of_found(*found, |by| f64::from(by.last_piece != LastPiece::Everywhere));
-        let next_event = self.of_found(*found, |by| f64::from(by.has_next_event));
-        let share = self.of_found(*found, |by| by.share);
+        let [hero, length, collisions, last, light, lists @ ..] = numbers else { return zero };
+        let without = self.of_found(*light, |by| f64::from(by.last_piece != LastPiece::Everywhere));
+        let next_event = self.of_found(*light, |by| f64::from(by.has_next_event));
+        let share = self.of_found(*light, |by| by.share);
         for (channel, value) in values.iter_mut().enumerate() {
             *value = lists[channel];
         }
@@ -340,12 +341,12 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
             if self.has(|by| by.last_piece == LastPiece::InContribution) {
                 let in_contribution =
                     |by: &Weighing| f64::from(by.last_piece == LastPiece::InContribution);
-                let is_added = zero.below(self.of_found(*found, in_contribution));
+                let is_added = zero.below(self.of_found(*light, in_contribution));
                 let last = (-(*last * self.media.majorants[channel])).exp();
                 *value = L::select(is_added, *value * last, *value);
             }
             if channel + self.weighings[0].missing < count {
-                let has_nulls = self.of_found(*found, |by| f64::from(by.has_nulls));
+                let has_nulls = self.of_found(*light, |by| f64::from(by.has_nulls));
                 let by_hit = L::select(zero.below(has_nulls), by_hit, direction);
                 density = density + by_hit * probability;
                 density = density + common * probability * next_event;
@@ -362,11 +363,11 @@ impl<S: WalkEvents> Walk for ToEmitter<'_, S> {
 impl<S: WalkEvents> ToEmitter<'_, S> {
     /// Value of a weighting's property for the techniques that found the paths.
     #[inline(always)]
-    fn of_found<L: Lane>(&self, found: L, says: impl Fn(&Weighing) -> f64) -> L {
+    fn of_found<L: Lane>(&self, light: L, says: impl Fn(&Weighing) -> f64) -> L {
         let [unscattered, hit, connected] = &self.weighings;
-        let (unscattered, hit) = (found.each(says(unscattered)), found.each(says(hit)));
-        let by_walk = L::select(found.equals(0.0), unscattered, hit);
-        L::select(found.below(found.each(2.0)), by_walk, found.each(says(connected)))
+        let (unscattered, hit) = (light.each(says(unscattered)), light.each(says(hit)));
+        let by_walk = L::select(light.equals(0.0), unscattered, hit);
+        L::select(light.below(light.each(2.0)), by_walk, light.each(says(connected)))
     }
 
     /// Returns whether a property holds for one of the techniques.
@@ -430,7 +431,7 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
             self.turn(path, which, keeps);
         }
         path.is_forward ^= which & !keeps;
-        path.found.keep_where(which, PathTechnique::Hit.as_lane(one));
+        path.light.keep_where(which, PathTechnique::Hit.as_lane(one));
     }
 
     /// Casts shadow rays of walks that are scattered.
@@ -456,7 +457,7 @@ impl<S: WalkEvents> ToEmitter<'_, S> {
         path.casts |= which;
         path.keeps.set_where(which, keeps);
         if S::CASTS_ANEW {
-            self.follow(path, which, self.law.choose(random.uniform_where(which)));
+            self.follow(path, which, self.distribution.choose(random.uniform_where(which)));
         }
     }
 

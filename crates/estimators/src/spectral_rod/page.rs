@@ -29,9 +29,9 @@ pub struct OfKind<const KIND: u8>(pub HeroOrJoint);
 #[inline(always)]
 fn scatter(albedos: &[f64], maximum: bool) -> f64 {
     if maximum {
-        let most = albedos.iter().fold(0.0f64, |most, &a| most.max(a));
-        let least = albedos.iter().fold(1.0f64, |least, &a| least.min(a));
-        most / (most + (1.0 - least))
+        let largest = albedos.iter().fold(0.0f64, |largest, &a| largest.max(a));
+        let minimum = albedos.iter().fold(1.0f64, |minimum, &a| minimum.min(a));
+        largest / (largest + (1.0 - minimum))
     } else {
         albedos.iter().sum::<f64>() / albedos.len() as f64
     }
@@ -44,7 +44,7 @@ impl<const KIND: u8> walk::HeroWeights for OfKind<KIND> {
     }
 
     #[inline(always)]
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+    fn probability(&self, albedos: &[f64], hero: usize) -> f64 {
         match self.0 {
             HeroOrJoint::Hero(_) => albedos[hero],
             HeroOrJoint::Together { maximum } => scatter(albedos, maximum),

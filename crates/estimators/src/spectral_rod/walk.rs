@@ -46,7 +46,7 @@ pub trait HeroWeights {
 
     /// Probability that a real collision scatters a hero.
     #[inline(always)]
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+    fn probability(&self, albedos: &[f64], hero: usize) -> f64 {
         albedos[hero]
     }
 
@@ -74,7 +74,7 @@ kept! {
         cosine: L,
         /// The number of the hero, and its probability to be scattered at a real collision.
         hero: L,
-        chance: L,
+        scattering: L,
         /// The number of scatterings.
         order: L,
     }
@@ -87,7 +87,7 @@ pub struct InBody<'a> {
     colours: &'a Colours,
     page: &'a dyn HeroWeights,
     /// The distribution of the hero, if one is chosen.
-    law: Option<HeroDistribution>,
+    distribution: Option<HeroDistribution>,
     /// The number of heroes, and their probabilities to be scattered at a real collision.
     heroes: usize,
     probabilities: [f64; MAX_CHANNELS],
@@ -103,13 +103,13 @@ impl<'a> InBody<'a> {
     fn new<P: Coloured>(page: &'a dyn HeroWeights, setup: &'a Setup<P>) -> Self {
         let (place, colours) = (setup.problem.place(), setup.problem.colours());
         let albedos = &colours.albedos;
-        let law = page.heroes().map(|heroes| HeroDistribution::new(heroes, albedos.len()));
-        let heroes = if law.is_some() { albedos.len() } else { 1 };
+        let distribution = page.heroes().map(|heroes| HeroDistribution::new(heroes, albedos.len()));
+        let heroes = if distribution.is_some() { albedos.len() } else { 1 };
         let mut probabilities = [0.0; MAX_CHANNELS];
-        for (hero, chance) in probabilities[..heroes].iter_mut().enumerate() {
-            *chance = page.chance(albedos, hero);
+        for (hero, scattering) in probabilities[..heroes].iter_mut().enumerate() {
+            *scattering = page.probability(albedos, hero);
         }
-        Self { place, colours, page, law, heroes, probabilities, table: &[] }
+        Self { place, colours, page, distribution, heroes, probabilities, table: &[] }
     }
 
     /// The weights of walks by their number, `order · heroes + hero`.
@@ -127,17 +127,23 @@ impl<'a> InBody<'a> {
 
     /// Lanes at a collision that are scattered, and lanes that go straight on.
     #[inline(always)]
-    fn decide<L: Lane>(&self, met: &TentativeCollision<L>, chance: L, sampling: L) -> [L::Mask; 2] {
-        let TentativeCollision { inside, extinction, number, .. } = *met;
+    fn decide<L: Lane>(
+        &self,
+        extinctions: &TentativeCollision<L>,
+        scattering: L,
+        sampling: L,
+    ) -> [L::Mask; 2] {
+        let TentativeCollision { inside, extinction, number, .. } = *extinctions;
         if let Place::Slab(_) = self.place {
-            let (scattered, passes) =
-                ParticleRule::Analog.probabilities(met.ratio(), chance).decide_each(inside, number);
+            let (scattered, passes) = ParticleRule::Analog
+                .probabilities(extinctions.ratio(), scattering)
+                .decide_each(inside, number);
             return [scattered, passes];
         }
         let ratio = extinction / sampling;
         let null = ratio.one_minus();
         let passes = inside & number.below(null);
-        [inside & !passes & number.below(null + chance * ratio), passes]
+        [inside & !passes & number.below(null + scattering * ratio), passes]
     }
 
     /// The cosines of lanes that are scattered.
@@ -204,8 +210,8 @@ impl Walk for InBody<'_> {
     #[inline(always)]
     fn begin<L: Lane>(&self, one: L, which: L::Mask, random: &mut impl Random<L>) -> Particle<L> {
         let zero = one.each(0.0);
-        let hero = match &self.law {
-            Some(law) => law.choose(random.uniform_where(which)),
+        let hero = match &self.distribution {
+            Some(distribution) => distribution.choose(random.uniform_where(which)),
             None => zero,
         };
         let light = match self.place {
@@ -213,8 +219,8 @@ impl Walk for InBody<'_> {
             Place::Slab(incidence) => incidence.light,
         };
         let cosine = entering(light, diffuse, which, one, random);
-        let chance = number_of_hero(hero, &self.probabilities[..self.heroes]);
-        Particle { cosine, hero, chance, order: zero }
+        let scattering = number_of_hero(hero, &self.probabilities[..self.heroes]);
+        Particle { cosine, hero, scattering, order: zero }
     }
 
     #[inline(always)]
@@ -233,10 +239,11 @@ impl Walk for InBody<'_> {
         &self,
         particle: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let [scattered, passes] = self.decide(met, particle.chance, route.here.sampling());
+        let [scattered, passes] =
+            self.decide(extinctions, particle.scattering, route.here.sampling());
         if scattered.maybe() {
             let cosine = self.turned(particle.cosine, scattered, random);
             particle.cosine.set_where(scattered, cosine);
@@ -318,8 +325,8 @@ pub fn require_scattering(albedos: &[f64], heroes: &Heroes) -> Result<(), Refusa
         scatters && albedos[hero] == 0.0 && heroes.probability(albedos.len(), hero) > 0.0
     });
     lost.map_or(Ok(()), |hero| {
-        let found = format!("the albedo of channel {} is 0, which biases the others", hero + 1);
-        Err(Refusal::mismatch("heroes that scatter where another channel does", found))
+        let actual = format!("the albedo of channel {} is 0, which biases the others", hero + 1);
+        Err(Refusal::mismatch("heroes that scatter where another channel does", actual))
     })
 }
 
@@ -347,6 +354,6 @@ pub fn require_variance(divergence: Option<(usize, Divergence)>) -> Result<(), R
             )
         }
     };
-    let found = format!("E[X²] of channel {} {reason}", channel + 1);
-    Err(Refusal::mismatch("a finite variance", found))
+    let actual = format!("E[X²] of channel {} {reason}", channel + 1);
+    Err(Refusal::mismatch("a finite variance", actual))
 }

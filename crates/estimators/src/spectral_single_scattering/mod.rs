@@ -58,8 +58,9 @@ fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result
         let bound = lit.shadow_majorant();
         if channel.majorant < bound * (1.0 - 1e-12) {
             let [majorant, bound] = [channel.majorant, bound].map(rounded);
-            let found = format!("σ̂ = {majorant} and σ_t is bounded by {bound} in channel {number}");
-            return Err(Refusal::mismatch("σ̂ ≥ σ_t on every shadow ray", found));
+            let actual =
+                format!("σ̂ = {majorant} and σ_t is bounded by {bound} in channel {number}");
+            return Err(Refusal::mismatch("σ̂ ≥ σ_t on every shadow ray", actual));
         }
     }
     Ok(())
@@ -100,8 +101,8 @@ fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Sha
         Walker::SpectralTracking(Chances::History) => {
             return theory::balanced(&alone, &Heroes::Uniform.of(count));
         }
-        Walker::SpectralTracking(Chances::Fixed(chance)) => {
-            vec![(1.0, Proposal::Together(*chance))]
+        Walker::SpectralTracking(Chances::Fixed(probability)) => {
+            vec![(1.0, Proposal::Together(*probability))]
         }
         Walker::Hero(heroes) => {
             heroes.of(count).into_iter().enumerate().map(|(h, w)| (w, Proposal::Hero(h))).collect()

@@ -29,7 +29,7 @@ use numeric::geometry::Point;
 use numeric::rng::{Random, Stream};
 use numeric::{Kept, Lane, Mask, kept};
 use theory::ParticleRule;
-use theory::colours::chance::shares;
+use theory::colours::probabilities::shares;
 use theory::problems::{ChannelValues as Values, SpectralSingleScattering};
 use theory::single::Tracking;
 
@@ -75,7 +75,7 @@ kept! {
 pub struct ToScattering<'a, S, const ALL: bool> {
     setup: &'a Setup<SpectralSingleScattering>,
     walker: &'a Walker,
-    law: Option<HeroDistribution>,
+    distribution: Option<HeroDistribution>,
     media: Media,
     albedos: [f64; MAX_CHANNELS],
     /// True if shadow rays are tracked.
@@ -131,13 +131,13 @@ impl<'a, S: WalkEvents, const ALL: bool> ToScattering<'a, S, ALL> {
     ) -> Self {
         let (count, mut albedos) = (setup.fields.len(), [0.0; MAX_CHANNELS]);
         albedos[..count].copy_from_slice(&setup.problem.albedos);
-        let law = walker.heroes().map(
+        let distribution = walker.heroes().map(
             #[inline(always)]
             |heroes| HeroDistribution::new(heroes, count),
         );
         let (media, tracks) =
             (Media::new(setup, &walker.probabilities(count)), shadow == Shadow::Ratio);
-        Self { setup, walker, law, media, albedos, tracks, fields, steps }
+        Self { setup, walker, distribution, media, albedos, tracks, fields, steps }
     }
 
     /// The probabilities to be scattered and to go straight on, given the hero's ratio and the ratios of all
@@ -268,8 +268,8 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         random: &mut impl Random<L>,
     ) {
         let (count, zero) = (self.media.count, one.each(0.0));
-        let hero = match &self.law {
-            Some(law) => law.choose(random.uniform_where(which)),
+        let hero = match &self.distribution {
+            Some(distribution) => distribution.choose(random.uniform_where(which)),
             None => zero,
         };
         let majorant = number_of_hero(hero, &self.media.majorants[..count]);
@@ -336,10 +336,10 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         &self,
         path: &mut ScatteringFlight<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let (TentativeCollision { inside, t, number, .. }, one) = (*met, met.t.each(1.0));
+        let (TentativeCollision { inside, t, number, .. }, one) = (*collided, collided.t.each(1.0));
         let ScatteringFlight { walks, casts, .. } = *path;
         if S::COUNTS {
             path.collisions.count_where(inside);
@@ -348,9 +348,9 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         let mut is_scattered = walks & !walks;
         if walks.maybe() {
             let (mut ratios, mut own) = ([one; MAX_CHANNELS], one);
-            let ratios = &mut ratios[..met.extinctions.len()];
+            let ratios = &mut ratios[..collided.extinctions.len()];
             for (channel, ratio) in ratios.iter_mut().enumerate() {
-                *ratio = met.extinctions[channel] / one.each(self.media.majorants[channel]);
+                *ratio = collided.extinctions[channel] / one.each(self.media.majorants[channel]);
                 own = or_of_hero(path.hero, channel, own, *ratio);
             }
             let [scatters, passes] = self.probabilities(path, own, ratios);
@@ -368,7 +368,7 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
             return !(ends | is_scattered);
         }
         if casts.any() {
-            for (channel, &extinction) in met.in_space.iter().enumerate() {
+            for (channel, &extinction) in collided.in_space.iter().enumerate() {
                 let ratio = extinction / one.each(self.media.majorants[channel]);
                 let through = path.through[channel] * ratio.one_minus();
                 path.through[channel].keep_where(path.inside, through);
@@ -444,8 +444,9 @@ impl<S: WalkEvents, const ALL: bool> Walk for ToScattering<'_, S, ALL> {
         if !ALL {
             for (channel, value) in values.iter_mut().enumerate() {
                 let lit = &self.setup.problem.channels[channel];
-                let chance = zero.each(self.media.probabilities[channel]);
-                let alone = lit.source(s) / zero.each(lit.albedo()) * through[channel] / chance;
+                let probability = zero.each(self.media.probabilities[channel]);
+                let alone =
+                    lit.source(s) / zero.each(lit.albedo()) * through[channel] / probability;
                 *value = L::select(hero.equals(channel as f64), alone, zero);
             }
             return zero;

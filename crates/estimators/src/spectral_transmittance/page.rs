@@ -69,7 +69,7 @@ impl<const KIND: u8> Estimator<SpectralTransmittance> for OfKind<KIND> {
             SPECTRAL_TRACKING => {
                 let chances = read_chances(settings)?;
                 let tracker = match chances {
-                    Chances::Fixed(chance) => Tracker::Tracking(chance),
+                    Chances::Fixed(probability) => Tracker::Tracking(probability),
                     // Weights that remember are those of the balance heuristic.
                     Chances::History => Tracker::Mis { delta: true },
                 };

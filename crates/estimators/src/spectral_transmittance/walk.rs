@@ -47,7 +47,7 @@ pub struct AlongRay<'a, S> {
     /// True if one walk serves all channels through their common σ̂: no hero is chosen.
     is_common: bool,
     /// The distribution of heroes.
-    pub law: HeroDistribution,
+    pub distribution: HeroDistribution,
     media: Media,
     /// `1/σ̂` of each channel.
     mean_free_paths: [f64; MAX_CHANNELS],
@@ -78,7 +78,7 @@ impl<'a, S: WalkEvents> AlongRay<'a, S> {
             support: setup.residual().mesh.support(),
             tracker,
             is_common: false,
-            law: HeroDistribution::new(heroes, count),
+            distribution: HeroDistribution::new(heroes, count),
             media: Media::new(setup, &probabilities),
             mean_free_paths,
             collisions,
@@ -118,7 +118,7 @@ impl<'a, S: WalkEvents> AlongRay<'a, S> {
     #[inline(always)]
     fn survival<L: Lane>(&self, hero: L, weights: &[L], shares: &[L]) -> Option<L> {
         match self.tracker {
-            Tracker::Tracking(chance) => Some(chance.of_null(shares)),
+            Tracker::Tracking(choice) => Some(choice.of_null(shares)),
             // Probabilities that depend on the weights score as the balance heuristic does.
             Tracker::Mis { delta: true } if self.is_common => {
                 let (mut nulls, mut all) = (hero.each(0.0), hero.each(0.0));
@@ -156,16 +156,16 @@ impl<S: WalkEvents> AlongRay<'_, S> {
     fn collide_alone<L: Lane>(
         path: &mut Particle<L>,
         delta: bool,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let share = met.t.each(1.0) - of_hero(path.hero, met.extinctions) / path.majorant;
+        let share = collided.t.each(1.0) - of_hero(path.hero, collided.extinctions) / path.majorant;
         if delta {
-            return random.uniform().below(share) & met.inside;
+            return random.uniform().below(share) & collided.inside;
         }
         let ratio = path.weights[0] * share;
-        path.weights[0].keep_where(met.inside, ratio);
-        met.inside
+        path.weights[0].keep_where(collided.inside, ratio);
+        collided.inside
     }
 
     /// Restarts walks that have ended with the next channel, if there is one; returns the lanes that do.
@@ -304,7 +304,7 @@ impl<S: WalkEvents> Walk for AlongRay<'_, S> {
         match self.tracker {
             _ if self.is_common => {}
             Tracker::InTurn { .. } => self.follow(path, which, one.each(0.0)),
-            _ => self.follow(path, which, self.law.choose(random.uniform_where(which))),
+            _ => self.follow(path, which, self.distribution.choose(random.uniform_where(which))),
         }
     }
 
@@ -318,17 +318,18 @@ impl<S: WalkEvents> Walk for AlongRay<'_, S> {
         &self,
         path: &mut Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         if let Tracker::Independent { delta } | Tracker::InTurn { delta } = self.tracker {
-            let goes_on = Self::collide_alone(path, delta, met, random);
+            let goes_on = Self::collide_alone(path, delta, collided, random);
             if matches!(self.tracker, Tracker::InTurn { .. }) {
-                return goes_on | self.turn(path, delta, (!goes_on, met.inside), route);
+                return goes_on | self.turn(path, delta, (!goes_on, collided.inside), route);
             }
             return goes_on;
         }
-        let (TentativeCollision { inside, t, extinctions, .. }, count) = (*met, self.media.count);
+        let (TentativeCollision { inside, t, extinctions, .. }, count) =
+            (*collided, self.media.count);
         let number = if self.tracker.is_delta() { random.uniform() } else { t };
         let one = t.each(1.0);
         let (hero, majorants) = (path.hero, &self.media.majorants[..count]);
@@ -343,8 +344,8 @@ impl<S: WalkEvents> Walk for AlongRay<'_, S> {
         if let Some(right) = self.survival(hero, &path.weights, &shares[..count]) {
             let mut survival = right;
             if self.is_common {
-                let [chance, by] = self.steps.tracked(right, &shares[..count]);
-                (survival, divisor) = (chance, Some(by));
+                let [choice, by] = self.steps.tracked(right, &shares[..count]);
+                (survival, divisor) = (choice, Some(by));
             }
             goes_on = number.below(survival) & inside;
         }

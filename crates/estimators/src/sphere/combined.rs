@@ -46,7 +46,7 @@ kept! {
         /// q at the last scattering, or at the place of a sought mean intensity.
         share: L,
         /// The probability of the null collisions since that scattering.
-        chance: L,
+        probability: L,
         /// The probability without the last collision, which may turn out to be real.
         before: L,
         /// The density of a connection of the last scattering with the one before.
@@ -128,14 +128,14 @@ impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     #[inline(always)]
     fn add_lit<L: Lane>(
         &self,
-        found: &mut Vertices<L>,
+        totals: &mut Vertices<L>,
         (which, light): LitLanes<L>,
-        [through, chance]: [L; 2],
+        [through, probability]: [L; 2],
     ) {
         let one = light.each(1.0);
-        let lit = one / (found.share * if self.sharing.is_full() { chance } else { one });
-        let score = self.steps.lit(light, through) * self.weight(1, lit, found.linked);
-        found.light.add_where(which, score);
+        let lit = one / (totals.share * if self.sharing.is_full() { probability } else { one });
+        let score = self.steps.lit(light, through) * self.weight(1, lit, totals.linked);
+        totals.light.add_where(which, score);
     }
 
     /// The exact transmittances of last segments.
@@ -160,19 +160,19 @@ impl<'a, B: WalkEvents, const CONNECTS: bool> Combined<'a, B, CONNECTS> {
     #[inline(always)]
     fn emit<L: Lane>(
         &self,
-        found: &mut Vertices<L>,
+        totals: &mut Vertices<L>,
         which: L::Mask,
         random: &mut impl Random<L>,
     ) -> L {
-        let (sphere, one) = (self.sphere(), found.light.each(1.0));
+        let (sphere, one) = (self.sphere(), totals.light.each(1.0));
         let cosine = |number| self.steps.cosine(number);
         let rays = emission::rays(sphere, cosine, (one, which), random);
         let flown = self.tracker().delta(rays, which, random);
-        let lit = one / (share(sphere, flown.place) * self.steps.chance(flown.chance));
-        found.has_emitted |= which;
-        found.is_emitted.set_where(which, flown.collided);
-        found.first.set_where(which, flown.place);
-        found.lit.set_where(which, lit);
+        let lit = one / (share(sphere, flown.place) * self.steps.probability(flown.probability));
+        totals.has_emitted |= which;
+        totals.is_emitted.set_where(which, flown.collided);
+        totals.first.set_where(which, flown.place);
+        totals.lit.set_where(which, lit);
         flown.lookups
     }
 }
@@ -190,7 +190,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         Vertices {
             light: zero,
             share: one,
-            chance: one,
+            probability: one,
             before: one,
             linked: zero,
             is_scattered: none,
@@ -203,8 +203,8 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     #[inline(always)]
-    fn value<L: Lane>(&self, found: &Vertices<L>, _: usize) -> L {
-        found.light
+    fn value<L: Lane>(&self, totals: &Vertices<L>, _: usize) -> L {
+        totals.light
     }
 
     #[inline(always)]
@@ -217,59 +217,60 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     #[inline(always)]
-    fn collided<L: Lane>(&self, found: &mut Vertices<L>, at: &CollisionTally<L>) {
+    fn collided<L: Lane>(&self, totals: &mut Vertices<L>, at: &CollisionTally<L>) {
         if self.has_nulls() {
-            let chance = self.steps.chance(self.rule.probabilities(at.ratio, at.albedo).transmit);
+            let probability =
+                self.steps.probability(self.rule.probabilities(at.ratio, at.albedo).transmit);
             if CONNECTS {
-                found.before.set_where(at.inside, found.chance);
+                totals.before.set_where(at.inside, totals.probability);
             }
-            found.chance.scale_where(at.inside, chance);
+            totals.probability.scale_where(at.inside, probability);
         }
     }
 
     #[inline(always)]
-    fn scattered<L: Lane>(&self, found: &mut Vertices<L>, which: L::Mask, place: [L; 3]) {
+    fn scattered<L: Lane>(&self, totals: &mut Vertices<L>, which: L::Mask, place: [L; 3]) {
         if !which.maybe() || self.sharing.techniques == Techniques::NextEvent {
             return;
         }
         if CONNECTS {
-            let [a, b, c] = found.place;
+            let [a, b, c] = totals.place;
             let away = [place[0] - a, place[1] - b, place[2] - c];
             let square = dot(away, away);
-            let linked = self.apart(square, place, which) / found.before;
+            let linked = self.apart(square, place, which) / totals.before;
             let is_linked = self.sharing.subpaths.is_some();
-            found.linked.set_where(which, square.each(0.0));
+            totals.linked.set_where(which, square.each(0.0));
             if is_linked {
                 let linked = self.steps.linked(linked, square);
-                found.linked.set_where(which & found.is_scattered, linked);
+                totals.linked.set_where(which & totals.is_scattered, linked);
             }
-            found.is_scattered |= which;
-            found.place.set_where(which, place);
+            totals.is_scattered |= which;
+            totals.place.set_where(which, place);
         }
-        found.share.set_where(which, share(self.sphere(), place));
-        found.chance.set_where(which, self.steps.segment(found.chance));
+        totals.share.set_where(which, share(self.sphere(), place));
+        totals.probability.set_where(which, self.steps.segment(totals.probability));
     }
 
     /// Light that was never scattered can only be hit.
     #[inline(always)]
-    fn escaped<L: Lane>(&self, found: &mut Vertices<L>, at: &Departure<L>) {
-        let (met, one) = (meets_light(self.sphere(), at), at.weight.each(1.0));
-        if !met.maybe() {
+    fn escaped<L: Lane>(&self, totals: &mut Vertices<L>, at: &Departure<L>) {
+        let (extinctions, one) = (meets_light(self.sphere(), at), at.weight.each(1.0));
+        if !extinctions.maybe() {
             return;
         }
         let is_ray = self.sphere().sought == Sought::Radiance;
         let unscattered = if is_ray { at.unscattered } else { at.left & !at.left };
         if self.sharing.techniques == Techniques::NextEvent {
-            return found.light.add_where(met & self.steps.counts(unscattered), at.weight);
+            return totals.light.add_where(extinctions & self.steps.counts(unscattered), at.weight);
         }
-        let chance = match self.sharing.shadow {
+        let probability = match self.sharing.shadow {
             _ if !self.sharing.is_full() => one,
-            Some(_) if CONNECTS => self.exact(found.place, at, met & found.is_scattered),
-            _ => found.chance,
+            Some(_) if CONNECTS => self.exact(totals.place, at, extinctions & totals.is_scattered),
+            _ => totals.probability,
         };
-        let mut weight = self.weight(0, one / (found.share * chance), found.linked);
+        let mut weight = self.weight(0, one / (totals.share * probability), totals.linked);
         weight.set_where(unscattered, one.each(self.steps.unscattered()));
-        found.light.add_where(met, at.weight * weight);
+        totals.light.add_where(extinctions, at.weight * weight);
     }
 
     fn core(&self) -> Option<(Point, f64)> {
@@ -305,15 +306,15 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     }
 
     #[inline(always)]
-    fn lit<L: Lane>(&self, found: &mut Vertices<L>, light: LitLanes<L>, through: L) {
-        self.add_lit(found, light, [through, through]);
+    fn lit<L: Lane>(&self, totals: &mut Vertices<L>, light: LitLanes<L>, through: L) {
+        self.add_lit(totals, light, [through, through]);
     }
 
     /// Tracks shadow rays by ratio tracking through the σ̂ of the walk.
     #[inline(always)]
     fn track<L: Lane>(
         &self,
-        found: &mut Vertices<L>,
+        totals: &mut Vertices<L>,
         at: &Scattering<L>,
         (light, [from, to]): (&VisibleLight<L>, [L; 2]),
         random: &mut impl Random<L>,
@@ -324,7 +325,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         let segment = self.tracker().ratio(rays, (is_blocked, end), self.rule, random);
         let through = segment.transmittance;
         let light = (at.which, at.weight * light.share * through);
-        self.add_lit(found, light, [through, segment.chance]);
+        self.add_lit(totals, light, [through, segment.probability]);
         segment.lookups
     }
 
@@ -332,7 +333,7 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
     #[inline(always)]
     fn connect<L: Lane>(
         &self,
-        found: &mut Vertices<L>,
+        totals: &mut Vertices<L>,
         at: &Scattering<L>,
         random: &mut impl Random<L>,
     ) -> L {
@@ -342,13 +343,13 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
             return zero;
         }
         let is_shared = subpaths == Subpaths::Shared;
-        let emits = if is_shared { at.which & !found.has_emitted } else { at.which };
-        let lookups = self.emit(found, emits, random);
-        let ([x, y, z], [a, b, c]) = (found.first, at.place);
+        let emits = if is_shared { at.which & !totals.has_emitted } else { at.which };
+        let lookups = self.emit(totals, emits, random);
+        let ([x, y, z], [a, b, c]) = (totals.first, at.place);
         let away = [x - a, y - b, z - c];
         let distance = dot(away, away).root();
         let (direction, is_apart) = normalised(away);
-        let mut which = at.which & found.is_emitted & is_apart;
+        let mut which = at.which & totals.is_emitted & is_apart;
         if let ball::BallLight::BlackSphere(core) = sphere.light {
             let (misses, near) = exit::meets(sphere.centre, core, at.place, direction);
             which &= !self.steps.is_hidden(!misses & near.below(distance));
@@ -356,12 +357,12 @@ impl<B: WalkEvents, const CONNECTS: bool> Tally for Combined<'_, B, CONNECTS> {
         let rays = [at.place, direction];
         let segment = self.tracker().ratio(rays, (which, distance), self.rule, random);
         let transmittance = segment.transmittance;
-        let apart = self.apart(distance * distance, found.first, which);
-        let albedo = self.tracker().albedo(found.first, which);
+        let apart = self.apart(distance * distance, totals.first, which);
+        let albedo = self.tracker().albedo(totals.first, which);
         let link = Link { distance, albedo, transmittance };
         let score = self.steps.connected(at.weight * transmittance / apart, &link);
-        let weight = self.weight(2, found.lit, apart / segment.chance);
-        found.light.add_where(which & !transmittance.equals(0.0), score * weight);
+        let weight = self.weight(2, totals.lit, apart / segment.probability);
+        totals.light.add_where(which & !transmittance.equals(0.0), score * weight);
         lookups + segment.lookups
     }
 }

@@ -118,8 +118,8 @@ impl Tally for Seeker<'_> {
     }
 
     #[inline(always)]
-    fn escaped<L: Lane>(&self, [found]: &mut [L; 1], at: &Departure<L>) {
-        found.add_where(meets_light(self.sphere, at), at.weight);
+    fn escaped<L: Lane>(&self, [totals]: &mut [L; 1], at: &Departure<L>) {
+        totals.add_where(meets_light(self.sphere, at), at.weight);
     }
 
     fn core(&self) -> Option<(Point, f64)> {

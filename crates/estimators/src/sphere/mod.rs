@@ -35,8 +35,8 @@ const MAX_COLLISIONS: f64 = 1e4;
 fn unknown(sphere: &Sphere) -> Refusal {
     let depth = sphere.majorant() * sphere.radius;
     if depth > predict::DEEPEST {
-        let found = format!("it may reach {}", rounded(depth));
-        return Refusal::mismatch("σ_t R ≤ 30, up to which Peierls' equation is solved", found);
+        let actual = format!("it may reach {}", rounded(depth));
+        return Refusal::mismatch("σ_t R ≤ 30, up to which Peierls' equation is solved", actual);
     }
     let needs = "an answer of Peierls' equation known to 1e-4";
     let Some(answer) = predict::answer(sphere) else {
@@ -56,8 +56,8 @@ fn realisable(setup: &Setup<Sphere>, particle: &ParticleSettings) -> Result<(), 
     let walks = space::walks(&sphere.scene, &setup.fields, particle);
     if !walks.never_grows() {
         let needs = "σ̂ ≥ σ_t, so that theory bounds the variance";
-        let found = format!("σ_t may reach {:.6} times σ̂", walks.ratio());
-        return Err(Refusal::mismatch(needs, found));
+        let actual = format!("σ_t may reach {:.6} times σ̂", walks.ratio());
+        return Err(Refusal::mismatch(needs, actual));
     }
     if predict::truth(sphere).is_none() {
         return Err(unknown(sphere));
@@ -87,8 +87,8 @@ fn connected(
     if let Tracking::Delta { sampling } = shadow
         && sampling < sphere.majorant() * (1.0 - SLACK)
     {
-        let found = format!("σ̄ = {sampling} and σ_t is bounded by {:.6} only", sphere.majorant());
-        return Err(Refusal::mismatch("σ̄ ≥ σ_t on every shadow ray", found));
+        let actual = format!("σ̄ = {sampling} and σ_t is bounded by {:.6} only", sphere.majorant());
+        return Err(Refusal::mismatch("σ̄ ≥ σ_t on every shadow ray", actual));
     }
     let gain = predict::gain(sphere, shadow);
     if gain > WILDEST {

@@ -78,7 +78,7 @@ pub trait WalkEvents: Copy {
 
     /// The probability of a null collision in the densities of the walk.
     #[inline(always)]
-    fn chance<L: Lane>(&self, right: L) -> L {
+    fn probability<L: Lane>(&self, right: L) -> L {
         right
     }
 

@@ -160,10 +160,10 @@ impl Walk for Residual {
         &self,
         flight: &mut ResidualFlight<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let TentativeCollision { inside, mean_free_path, extinction, number, .. } = *met;
+        let TentativeCollision { inside, mean_free_path, extinction, number, .. } = *extinctions;
         let is_real = number.below((extinction - self.subtracted) * mean_free_path);
         let goes_on = flight.begins | (inside & !is_real);
         flight.begins = flight.begins & !flight.begins;

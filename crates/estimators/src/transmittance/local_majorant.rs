@@ -147,11 +147,11 @@ impl Walk for Segments<'_> {
         &self,
         hop: &mut Hop<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let TentativeCollision { inside, number, .. } = *met;
-        let is_real = number.below(met.ratio());
+        let TentativeCollision { inside, number, .. } = *extinctions;
+        let is_real = number.below(extinctions.ratio());
         let last = hop.segment.each((self.rows.len() - 1) as f64);
         let crosses = !inside & hop.segment.below(last);
         hop.set_where(crosses, self.enter(hop.segment + 1.0));

@@ -114,15 +114,16 @@ impl<R: Collision> Walk for Product<'_, R> {
         &self,
         particle: &mut ProductParticle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *met;
+        let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *extinctions;
         let residual = extinction - self.control.extinction(t);
-        let met = rules::Extinctions { residual, sampling: route.here.sampling(), mean_free_path };
-        let (ratio, outcome) = (met.ratio(), self.rule.at(met.ratio()));
+        let extinctions =
+            rules::Extinctions { residual, sampling: route.here.sampling(), mean_free_path };
+        let (ratio, outcome) = (extinctions.ratio(), self.rule.at(extinctions.ratio()));
         let goes_on =
-            if R::DECIDES { inside & !self.rule.absorption(&met, number) } else { inside };
+            if R::DECIDES { inside & !self.rule.absorption(&extinctions, number) } else { inside };
         let ProductParticle { weight, invariant } = particle;
         // In walks that end, too: the restart overwrites them.
         invariant.take(*weight, self.rule.unbiased_weight(ratio, outcome.survival));
@@ -183,14 +184,15 @@ impl<R: Collision> Walk for Survival<'_, R> {
         &self,
         survivor: &mut Survivor<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *met;
+        let TentativeCollision { inside, t, mean_free_path, extinction, number, .. } = *extinctions;
         let residual = extinction - self.0.control.extinction(t);
-        let met = rules::Extinctions { residual, sampling: route.here.sampling(), mean_free_path };
-        let goes_on = inside & !self.0.rule.absorption(&met, number);
-        let (zero, ratio) = (t.each(0.0), met.ratio());
+        let extinctions =
+            rules::Extinctions { residual, sampling: route.here.sampling(), mean_free_path };
+        let goes_on = inside & !self.0.rule.absorption(&extinctions, number);
+        let (zero, ratio) = (t.each(0.0), extinctions.ratio());
         // NaN stays NaN.
         let is_missing = !zero.at_most(ratio);
         survivor.missing.add_where(is_missing, ratio);

@@ -47,7 +47,7 @@ impl Estimator<Transmittance> for Regular {
             None => Ok(()),
             Some(panel) => Err(Refusal::Inequality {
                 needs: "a medium that is constant between its breaks".into(),
-                found: "σ_t varies".into(),
+                actual: "σ_t varies".into(),
                 at: panel.span.middle(),
             }),
         }

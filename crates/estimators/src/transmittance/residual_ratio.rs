@@ -63,8 +63,8 @@ impl Estimator<Transmittance> for ResidualRatio {
             Control::Field(_) => false,
         };
         if !constant {
-            let found = "the control varies (write `double` for that)";
-            return Err(Refusal::mismatch("a constant control", found));
+            let actual = "the control varies (write `double` for that)";
+            return Err(Refusal::mismatch("a constant control", actual));
         }
         unbiased_where_covered(setup)
     }

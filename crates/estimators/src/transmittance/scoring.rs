@@ -106,11 +106,14 @@ impl<H: Share> Walk for Scoring<H> {
         &self,
         score: &mut Score<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        score.set_where(met.inside, score.collided(met.ratio(), self.share(met.t)));
-        met.inside
+        score.set_where(
+            extinctions.inside,
+            score.collided(extinctions.ratio(), self.share(extinctions.t)),
+        );
+        extinctions.inside
     }
 
     #[inline(always)]

@@ -158,10 +158,10 @@ impl Walk for Curve<'_> {
         &self,
         weights: &mut Weights<L>,
         _: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         _: &mut impl Random<L>,
     ) -> L::Mask {
-        let TentativeCollision { inside, t, mean_free_path, extinction, .. } = *met;
+        let TentativeCollision { inside, t, mean_free_path, extinction, .. } = *extinctions;
         let residual = extinction - self.control.extinction(t);
         let due = t.each(1.0) - residual * mean_free_path;
         let Weights { weight, ahead, invariant } = weights;

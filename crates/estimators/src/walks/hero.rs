@@ -117,26 +117,26 @@ impl Media {
     /// Turns densities into scores by the balance heuristic over all heroes but the last `missing`. Returns the
     /// deviation from 1 of their mean over heroes.
     #[inline(always)]
-    pub fn balance<L: Lane>(&self, missing: usize, found: &mut [L]) -> L {
-        let zero = found[0].each(0.0);
+    pub fn balance<L: Lane>(&self, missing: usize, actual: &mut [L]) -> L {
+        let zero = actual[0].each(0.0);
         let (mut density, mut sum) = (zero, zero);
-        for (channel, &found) in found[..self.count - missing].iter().enumerate() {
-            density = density + found * self.probabilities[channel];
+        for (channel, &actual) in actual[..self.count - missing].iter().enumerate() {
+            density = density + actual * self.probabilities[channel];
         }
         let scale = L::select(zero.below(density), zero.each(1.0) / density, zero);
-        for (channel, found) in found.iter_mut().enumerate() {
-            *found = *found * scale;
-            sum = sum + *found * self.probabilities[channel];
+        for (channel, actual) in actual.iter_mut().enumerate() {
+            *actual = *actual * scale;
+            sum = sum + *actual * self.probabilities[channel];
         }
         (sum - 1.0).size()
     }
 
     /// Sets the scores of walks that score for their heroes alone.
     #[inline(always)]
-    pub fn alone<L: Lane>(&self, hero: L, found: &mut [L]) {
-        for (channel, found) in found.iter_mut().enumerate() {
+    pub fn alone<L: Lane>(&self, hero: L, actual: &mut [L]) {
+        for (channel, actual) in actual.iter_mut().enumerate() {
             let own = hero.each(1.0) / hero.each(self.probabilities[channel]);
-            *found = L::select(hero.equals(channel as f64), own, hero.each(0.0));
+            *actual = L::select(hero.equals(channel as f64), own, hero.each(0.0));
         }
     }
 }

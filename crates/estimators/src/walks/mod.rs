@@ -160,7 +160,7 @@ pub trait Walk: Copy {
         &self,
         state: &mut Self::State<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        collided: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask;
 

@@ -101,8 +101,8 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
             lookups += 1;
             t = walk.distance(&state, &route);
             mean_free_path = walk.mean_free_path(&state, &route);
-            for (channel, found) in extinctions.iter_mut().enumerate() {
-                *found = on_ray(channel, t);
+            for (channel, actual) in extinctions.iter_mut().enumerate() {
+                *actual = on_ray(channel, t);
             }
         }
         if !inside && !W::PAUSES {
@@ -110,7 +110,7 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
         }
         let extinction = extinctions[0];
         let (extinctions, in_space) = (&*extinctions, &*there);
-        let met = TentativeCollision {
+        let collided = TentativeCollision {
             inside,
             t,
             mean_free_path,
@@ -120,14 +120,14 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
             number,
         };
         let before = state;
-        let goes_on = walk.collide(&mut state, &mut route, &met, random);
+        let goes_on = walk.collide(&mut state, &mut route, &collided, random);
         if W::IS_FIXED && !goes_on {
             state = before;
         }
         if W::SCORES == Scores::Often && walk.scores(&state, !goes_on) {
-            let (found, _) = score(walk, &state, true, zero);
-            for (sum, found) in sums.iter_mut().zip(found) {
-                *sum = *sum + found;
+            let (actual, _) = score(walk, &state, true, zero);
+            for (sum, actual) in sums.iter_mut().zip(actual) {
+                *sum = *sum + actual;
             }
         }
         if !goes_on {
@@ -138,8 +138,8 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
         Scores::AtOnce => scored(walk, &state, left, lookups),
         Scores::Later => {
             let lookups = counted(walk, &state, lookups);
-            let (found, defect) = score(walk, &state, left, L::of(f64::from(lookups)));
-            let value = V::of(walk.channels(), |channel| found[channel].double());
+            let (actual, defect) = score(walk, &state, left, L::of(f64::from(lookups)));
+            let value = V::of(walk.channels(), |channel| actual[channel].double());
             Draw { value, lookups, defect: defect.double() }
         }
         Scores::Often => {
@@ -196,12 +196,12 @@ pub fn look_up_in_space<L: ScalarLane, W: Walk>(
     walk: &W,
     state: &W::State<L>,
     look_up: &impl Fn(usize, [L; 3]) -> L,
-    found: &mut [L],
+    actual: &mut [L],
 ) -> u32 {
     let (inside, place) = walk.in_space(state);
     if inside {
-        for (number, found) in found.iter_mut().enumerate() {
-            *found = look_up(number, place);
+        for (number, actual) in actual.iter_mut().enumerate() {
+            *actual = look_up(number, place);
         }
     }
     u32::from(inside)

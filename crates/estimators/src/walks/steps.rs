@@ -45,10 +45,10 @@ pub fn roulette<L: Lane>(
     weight: &mut L,
     random: &mut impl Random<L>,
 ) -> L::Mask {
-    let Some(least) = below.map(|least| weight.each(least)) else { return goes_on };
+    let Some(minimum) = below.map(|minimum| weight.each(minimum)) else { return goes_on };
     let size = weight.size();
-    let plays = goes_on & size.below(least);
-    let survives = (random.uniform_where(plays) * least).below(size);
-    weight.set_where(plays, least.with_sign_of(*weight));
+    let plays = goes_on & size.below(minimum);
+    let survives = (random.uniform_where(plays) * minimum).below(size);
+    weight.set_where(plays, minimum.with_sign_of(*weight));
     goes_on & (!plays | survives)
 }

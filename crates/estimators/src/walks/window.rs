@@ -128,7 +128,7 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
         let mean_free_path = walk.mean_free_path(&self.state, &self.route);
         let number = numbers.decision;
         let (extinctions, in_space): (&[L], &[L]) = (&[], &[]);
-        let met = TentativeCollision {
+        let collided = TentativeCollision {
             inside,
             t,
             mean_free_path,
@@ -140,7 +140,7 @@ impl<L: Lane, W: Walk, C: BothWays<L>> Pack<L, W, C> {
         if W::PAUSES {
             self.lookups.count_where(inside);
         }
-        let goes_on = walk.collide(&mut self.state, &mut self.route, &met, &mut { *numbers });
+        let goes_on = walk.collide(&mut self.state, &mut self.route, &collided, &mut { *numbers });
         if W::PAUSES {
             self.lookups.store(&mut row.0[1]);
             self.lookups.set_where(!goes_on, t.each(0.0));
@@ -419,11 +419,11 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
             let numbers = window.numbers(step, &mut streams, W::DECIDES);
             let other_numbers = other_window.numbers(step, &mut other_streams, W::DECIDES);
             let t = Pair(pack.fly(&walk, &numbers), other.fly(&walk, &other_numbers));
-            let found = look_up(t);
-            let bits = pack.collide(&walk, (t.0, found.0), &numbers, &mut window.rows[step]);
+            let actual = look_up(t);
+            let bits = pack.collide(&walk, (t.0, actual.0), &numbers, &mut window.rows[step]);
             window.note(step, bits, W::DECIDES);
             let bits =
-                other.collide(&walk, (t.1, found.1), &other_numbers, &mut other_window.rows[step]);
+                other.collide(&walk, (t.1, actual.1), &other_numbers, &mut other_window.rows[step]);
             other_window.note(step, bits, W::DECIDES);
         }
         let (first, second) = ((0, pack.stores_defects), (1, other.stores_defects));

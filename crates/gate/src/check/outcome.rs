@@ -138,27 +138,27 @@ pub enum CheckFault {
         /// The property.
         what: &'static str,
         /// Number of numbers that were given.
-        found: usize,
+        result: usize,
         /// Number of values of a draw.
-        wanted: usize,
+        expected: usize,
     },
     /// A draw has another number of values than the case has channels.
     Channels {
         /// Number of values of a draw.
-        found: usize,
+        result: usize,
         /// Names of the channels.
         channels: Vec<String>,
         /// Numbers of values that a draw may have, in words.
-        wanted: String,
+        expected: String,
     },
     /// A property takes another number of numbers.
     Count {
         /// The property.
         what: &'static str,
         /// Number of numbers that were given.
-        found: usize,
+        result: usize,
         /// Numbers that it takes, in words.
-        wanted: &'static str,
+        expected: &'static str,
     },
     /// A number is not whole, or out of bounds.
     Whole {
@@ -180,9 +180,9 @@ pub enum CheckFault {
     /// There are more or fewer lookups than draws.
     Lookups {
         /// Number of lookups.
-        found: usize,
+        result: usize,
         /// Number of draws.
-        wanted: usize,
+        expected: usize,
     },
     /// The case could not be read; the message says why.
     Case(String),
@@ -198,9 +198,9 @@ pub enum CheckFault {
     /// The last draw is not whole.
     Ragged {
         /// Number of numbers.
-        found: usize,
+        result: usize,
         /// Number of values of a draw.
-        wanted: usize,
+        expected: usize,
     },
     /// There are no draws.
     NoDraws,
@@ -232,23 +232,23 @@ impl fmt::Display for CheckFault {
             Self::TooManyValues(values) => {
                 write!(f, "a draw has {values} values; {MAX_VALUES} are judged together at most")
             }
-            Self::Values { what, found, wanted } => {
-                let (found, wanted) = (counted(*found, "number"), counted(*wanted, "value"));
+            Self::Values { what, result, expected } => {
+                let (result, expected) = (counted(*result, "number"), counted(*expected, "value"));
                 write!(
                     f,
-                    "{found} for the {what}, but a draw has {wanted}; give one for each value, or one for all"
+                    "{result} for the {what}, but a draw has {expected}; give one for each value, or one for all"
                 )
             }
-            Self::Channels { found, channels, wanted } => {
+            Self::Channels { result, channels, expected } => {
                 let names = match &channels[..] {
                     [one] if one.is_empty() => "its only one".to_owned(),
                     _ => channels.join(", "),
                 };
-                let (found, all) = (counted(*found, "value"), counted(channels.len(), "channel"));
-                write!(f, "a draw has {found}, but the case has {all} ({names}); give draws of {wanted}")
+                let (result, all) = (counted(*result, "value"), counted(channels.len(), "channel"));
+                write!(f, "a draw has {result}, but the case has {all} ({names}); give draws of {expected}")
             }
-            Self::Count { what, found, wanted } => {
-                write!(f, "{what} takes {wanted}, but was given {}", counted(*found, "number"))
+            Self::Count { what, result, expected } => {
+                write!(f, "{what} takes {expected}, but was given {}", counted(*result, "number"))
             }
             Self::Whole { what, value, min, max } => {
                 let value = number(*value);
@@ -264,16 +264,16 @@ impl fmt::Display for CheckFault {
             Self::NoLookupsWanted => f.write_str(
                 "nothing is known of the lookups; give .lookups(mean, variance), or push draws alone",
             ),
-            Self::Lookups { found, wanted } => {
-                write!(f, "{found} lookups for {wanted} draws; give one for each draw")
+            Self::Lookups { result, expected } => {
+                write!(f, "{result} lookups for {expected} draws; give one for each draw")
             }
             Self::Case(message) => f.write_str(message),
             Self::Panicked { draw, seed, message } => {
                 write!(f, "the estimator panicked in draw {draw} (seed {seed}): {message}")
             }
-            Self::Ragged { found, wanted } => write!(
+            Self::Ragged { result, expected } => write!(
                 f,
-                "{found} numbers are no whole number of draws of {wanted} values; push whole draws"
+                "{result} numbers are no whole number of draws of {expected} values; push whole draws"
             ),
             Self::NoDraws => f.write_str("there are no draws; make one at least"),
         }

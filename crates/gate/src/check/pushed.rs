@@ -47,7 +47,7 @@ impl Check<()> {
     fn opened(self, numbers: Option<usize>) -> Result<Pushed, CheckError> {
         let values = self.said.values();
         let length =
-            numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.wanted.most);
+            numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.expected.maximum);
         let has_lookups = self.said.has_lookups();
         self.begun(values, has_lookups, length)
     }
@@ -67,7 +67,7 @@ impl Check<()> {
     /// Numbers that address the blocks of draws.
     fn plan(&self) -> BlockPlan {
         let (seed, experiment) = (self.said.seed, name_hash(&self.name));
-        BlockPlan { seed, experiment, most: self.said.wanted.most.unwrap_or(MAX_DRAWS) }
+        BlockPlan { seed, experiment, maximum: self.said.expected.maximum.unwrap_or(MAX_DRAWS) }
     }
 }
 
@@ -115,15 +115,15 @@ impl BlockRequest {
 pub(super) struct BlockPlan {
     pub(super) seed: u64,
     pub(super) experiment: u64,
-    pub(super) most: u64,
+    pub(super) maximum: u64,
 }
 
 impl BlockPlan {
     /// Returns the requests for all blocks.
     pub(super) fn requests(self) -> impl Iterator<Item = BlockRequest> {
         let size = BUFFER as u64;
-        (0..self.most.div_ceil(size)).map(move |block| BlockRequest {
-            draws: room(self.most - block * size),
+        (0..self.maximum.div_ceil(size)).map(move |block| BlockRequest {
+            draws: room(self.maximum - block * size),
             block,
             plan: self,
         })
@@ -159,8 +159,8 @@ impl Pushed {
         mut source: impl FnMut(&mut Self, BlockRequest) -> Result<bool, E>,
     ) -> Result<(), E> {
         let plan = self.check.plan();
-        let is_fixed = self.check.said.wanted.most.is_some();
-        let until = Until { most: Some(plan.most), is_decided: !is_fixed };
+        let is_fixed = self.check.said.expected.maximum.is_some();
+        let until = Until { maximum: Some(plan.maximum), is_decided: !is_fixed };
         let stopped = drive(self, until, |pushed, draws| {
             let request = BlockRequest { draws, block: pushed.next, plan };
             pushed.next += 1;
@@ -209,9 +209,9 @@ impl Pushed {
             self.session = self.check.session(self.values(), true, self.length)?;
             self.has_lookups = true;
         }
-        let (found, wanted) = (lookups.len(), draws.len() / self.values());
-        if found != wanted {
-            return Err(CheckFault::Lookups { found, wanted }.of(&self.check.name));
+        let (result, expected) = (lookups.len(), draws.len() / self.values());
+        if result != expected {
+            return Err(CheckFault::Lookups { result, expected }.of(&self.check.name));
         }
         self.push(draws, lookups)
     }
@@ -244,7 +244,7 @@ impl Pushed {
         let Self { check, session, stopped, .. } = self;
         let channels = check.said.names(session.values());
         let values = session.outcome(stopped);
-        Ok(Outcome { name: check.name, alpha: check.said.wanted.alpha, channels, values })
+        Ok(Outcome { name: check.name, alpha: check.said.expected.alpha, channels, values })
     }
 
     /// Panics unless the draws pass.
@@ -259,17 +259,17 @@ impl Pushed {
 
     /// Adds draws that are stored one after the other.
     fn push(&mut self, draws: &[f64], lookups: &[f64]) -> Result<(), CheckError> {
-        let wanted = self.values();
-        if !draws.len().is_multiple_of(wanted) {
-            let fault = CheckFault::Ragged { found: draws.len(), wanted };
+        let expected = self.values();
+        if !draws.len().is_multiple_of(expected) {
+            let fault = CheckFault::Ragged { result: draws.len(), expected };
             return Err(fault.of(&self.check.name));
         }
-        if wanted == 1 {
+        if expected == 1 {
             self.session.absorb(&[draws], lookups);
             return Ok(());
         }
         let mut lookups = lookups.chunks(BUFFER);
-        for rows in draws.chunks(BUFFER * wanted) {
+        for rows in draws.chunks(BUFFER * expected) {
             self.block.clear();
             self.block.push_rows(rows);
             self.session.absorb(&self.block.columns(), lookups.next().unwrap_or_default());

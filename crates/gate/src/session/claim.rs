@@ -72,7 +72,7 @@ pub enum ClaimError {
         /// The number.
         value: f64,
         /// Valid numbers in words.
-        wanted: &'static str,
+        expected: &'static str,
     },
     /// The range is empty, or the truth is outside.
     Range {
@@ -90,7 +90,7 @@ pub enum ClaimError {
         /// The truth.
         truth: f64,
         /// Largest variance in the range.
-        most: f64,
+        maximum: f64,
     },
     /// The truth is 0, and no tolerance is given.
     NoUnit,
@@ -112,8 +112,8 @@ impl Error for ClaimError {}
 impl fmt::Display for ClaimError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Number { what, value, wanted } => {
-                write!(f, "{what} = {} is not {wanted}; give another", number(*value))
+            Self::Number { what, value, expected } => {
+                write!(f, "{what} = {} is not {expected}; give another", number(*value))
             }
             Self::Range { low, high, truth } => {
                 let why = if low < high {
@@ -124,9 +124,9 @@ impl fmt::Display for ClaimError {
                 let (low, high) = (number(*low), number(*high));
                 write!(f, "a range of {low} to {high} {why}; give a range around the truth")
             }
-            Self::TooSpread { variance, truth, most } => write!(
+            Self::TooSpread { variance, truth, maximum } => write!(
                 f,
-                "a variance of {variance:e} is impossible in the range: with the mean {truth:e} it is {most:e} at most; \
+                "a variance of {variance:e} is impossible in the range: with the mean {truth:e} it is {maximum:e} at most; \
                  mend one of them"
             ),
             Self::NoUnit => f.write_str(
@@ -171,9 +171,9 @@ impl Claim {
     /// A number is not finite, or is negative where it must not be; or a range is inconsistent with the truth or
     /// the variance.
     pub fn validated(self) -> Result<Self, ClaimError> {
-        let check = |what, value: f64, least: f64, wanted| {
-            let is_fine = value.is_finite() && value >= least;
-            if is_fine { Ok(()) } else { Err(ClaimError::Number { what, value, wanted }) }
+        let check = |what, value: f64, minimum: f64, expected| {
+            let is_fine = value.is_finite() && value >= minimum;
+            if is_fine { Ok(()) } else { Err(ClaimError::Number { what, value, expected }) }
         };
         check("truth", self.truth, f64::NEG_INFINITY, "a finite number")?;
         check("rounding", self.rounding, 0.0, "a finite number, 0 or more")?;
@@ -200,10 +200,10 @@ impl Claim {
         }
         // R. Bhatia, C. Davis, A better bound on the variance, American Mathematical Monthly 107 (2000).
         // By roots, since squares of small numbers underflow.
-        let most = (high - truth).sqrt() * (truth - low).sqrt();
-        if (variance * (1.0 - self.variance_error)).sqrt() > most * (1.0 + 1e-9) {
-            let most = most * most;
-            return Err(ClaimError::TooSpread { variance, truth, most });
+        let maximum = (high - truth).sqrt() * (truth - low).sqrt();
+        if (variance * (1.0 - self.variance_error)).sqrt() > maximum * (1.0 + 1e-9) {
+            let maximum = maximum * maximum;
+            return Err(ClaimError::TooSpread { variance, truth, maximum });
         }
         Ok(Self { range, ..self })
     }
@@ -258,7 +258,7 @@ pub struct Options {
     /// True to stop reading as soon as all is decided.
     pub stop_early: bool,
     /// Largest number of draws that are read.
-    pub most: Option<u64>,
+    pub maximum: Option<u64>,
 }
 
 impl Default for Options {
@@ -269,7 +269,7 @@ impl Default for Options {
             alpha: 1e-3,
             batch: 1,
             stop_early: false,
-            most: None,
+            maximum: None,
         }
     }
 }
@@ -277,15 +277,15 @@ impl Default for Options {
 impl Options {
     /// End of the draws that are taken from a source.
     pub fn until(&self) -> Until {
-        Until { most: self.most, is_decided: self.stop_early }
+        Until { maximum: self.maximum, is_decided: self.stop_early }
     }
 }
 
 /// Checks that α is a probability between 0 and 1.
 pub(super) fn check_alpha(value: f64) -> Result<(), ClaimError> {
-    let (what, wanted) = ("alpha", "a probability above 0 and below 1");
+    let (what, expected) = ("alpha", "a probability above 0 and below 1");
     let is_fine = value > 0.0 && value < 1.0;
-    if is_fine { Ok(()) } else { Err(ClaimError::Number { what, value, wanted }) }
+    if is_fine { Ok(()) } else { Err(ClaimError::Number { what, value, expected }) }
 }
 
 /// A claim with the settings of the verdict, ready for draws.
@@ -294,7 +294,7 @@ pub struct CheckedClaim {
     /// Claim on a draw.
     pub claim: Claim,
     /// Error rate, tolerances and number of draws.
-    pub wanted: Options,
+    pub expected: Options,
     /// Number of draws, if known.
     pub length: Option<u64>,
 }
@@ -305,20 +305,20 @@ impl CheckedClaim {
     /// # Errors
     ///
     /// A tolerance, a number of draws or α is invalid for this claim.
-    pub fn new(claim: Claim, wanted: Options, length: Option<u64>) -> Result<Self, ClaimError> {
+    pub fn new(claim: Claim, expected: Options, length: Option<u64>) -> Result<Self, ClaimError> {
         let positive = |what, value: Option<f64>| match value {
             Some(value) if !(value > 0.0 && value.is_finite()) => {
-                Err(ClaimError::Number { what, value, wanted: "a finite number above 0" })
+                Err(ClaimError::Number { what, value, expected: "a finite number above 0" })
             }
             _ => Ok(()),
         };
-        positive("tolerance", wanted.tolerance)?;
-        positive("variance tolerance", wanted.variance_tolerance)?;
-        positive("batch", Some(wanted.batch as f64))?;
-        positive("number of draws", wanted.most.map(|most| most as f64))?;
-        check_alpha(wanted.alpha)?;
-        let trial = Self { claim, wanted, length };
-        if wanted.variance_tolerance.is_some() {
+        positive("tolerance", expected.tolerance)?;
+        positive("variance tolerance", expected.variance_tolerance)?;
+        positive("batch", Some(expected.batch as f64))?;
+        positive("number of draws", expected.maximum.map(|maximum| maximum as f64))?;
+        check_alpha(expected.alpha)?;
+        let trial = Self { claim, expected, length };
+        if expected.variance_tolerance.is_some() {
             let why = match claim.variance {
                 None => Some("none is claimed"),
                 Some(_) if trial.is_certain() || trial.is_faint() => Some("rounding hides it"),
@@ -326,7 +326,7 @@ impl CheckedClaim {
             };
             why.map_or(Ok(()), |why| Err(ClaimError::NoVariance(why)))?;
         }
-        if claim.truth == 0.0 && wanted.tolerance.is_none() && !trial.is_certain() {
+        if claim.truth == 0.0 && expected.tolerance.is_none() && !trial.is_certain() {
             return Err(ClaimError::NoUnit);
         }
         let blurred = |what, tolerance: Option<f64>, floor: f64| match tolerance {
@@ -335,13 +335,13 @@ impl CheckedClaim {
             }
             _ => Ok(()),
         };
-        blurred("mean", wanted.tolerance, claim.floor())?;
+        blurred("mean", expected.tolerance, claim.floor())?;
         // Without a tolerance from the caller, one above the cap would be chosen.
-        if wanted.tolerance.is_none() && claim.truth != 0.0 {
+        if expected.tolerance.is_none() && claim.truth != 0.0 {
             blurred("mean", Some(MEAN_CAP), claim.floor())?;
         }
         if let Some(variance) = claim.variance.filter(|&variance| variance > 0.0) {
-            blurred("variance", wanted.variance_tolerance, claim.variance_floor(variance))?;
+            blurred("variance", expected.variance_tolerance, claim.variance_floor(variance))?;
         }
         Ok(trial)
     }
@@ -369,8 +369,8 @@ impl CheckedClaim {
 
     /// Quantities that can be judged with this claim.
     pub(super) fn quantities(&self) -> Vec<Quantity> {
-        let Self { claim, wanted, .. } = self;
-        let unit = if wanted.batch > 1 { DrawUnit::Averages } else { DrawUnit::Draws };
+        let Self { claim, expected, .. } = self;
+        let unit = if expected.batch > 1 { DrawUnit::Averages } else { DrawUnit::Draws };
         let is_bounded = claim.range.is_some_and(|[low, high]| (high - low).is_finite());
         let mut quantities = Vec::new();
         if !self.is_certain() {
@@ -380,7 +380,7 @@ impl CheckedClaim {
             // The variance of the draws themselves is no ground to fail.
             let ground = known.or(promised).or((!is_bounded).then_some(VarianceBound::Shown));
             let in_units = |end: f64| (end - claim.truth) / claim.unit;
-            let mean = Quantity::mean(ground, claim.floor()).within(wanted.tolerance);
+            let mean = Quantity::mean(ground, claim.floor()).within(expected.tolerance);
             let range = claim.widened().map(|range| range.map(in_units));
             quantities.push(Quantity { range, unit, ..mean.of(claim.truth, claim.unit) });
         }
@@ -393,7 +393,7 @@ impl CheckedClaim {
                 range
                     .map(|end| (end - claim.truth) / variance.sqrt())
                     .into_iter()
-                    .fold(0.0, |most: f64, end| most.max(end * end))
+                    .fold(0.0, |maximum: f64, end| maximum.max(end * end))
             });
             let ground = known.or((!is_bounded).then_some(VarianceBound::Shown));
             let quantity = Quantity::variance(ground, claim.variance_floor(variance));
@@ -401,7 +401,7 @@ impl CheckedClaim {
                 // A square is never negative: the variance may be refuted as too large without any other claim.
                 range: (is_bounded || known.is_none()).then_some([-1.0, furthest - 1.0]),
                 unit,
-                ..quantity.within(wanted.variance_tolerance).of(variance, variance)
+                ..quantity.within(expected.variance_tolerance).of(variance, variance)
             });
         }
         if let Some(claimed) = claim.lookups.filter(|claimed| !claimed.is_fixed()) {
@@ -425,8 +425,8 @@ impl CheckedClaim {
             Some(design(variance, tolerance, 0.0).draws())
         };
         let length = length.map(|length| length as f64);
-        let asked = quantities.iter().filter_map(|q| needs(q, Design::asked, q.tolerance?));
-        match asked.reduce(f64::max) {
+        let requested = quantities.iter().filter_map(|q| needs(q, Design::asked, q.tolerance?));
+        match requested.reduce(f64::max) {
             Some(needed) => Some(length.map_or(needed, |length| needed.min(length))),
             None => length.or_else(|| needs(quantities.first()?, Design::new, USUAL)),
         }

@@ -13,8 +13,8 @@ use numeric::digits::short;
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     // Without a ground to fail the mean, a change has no ground either.
     let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
-    let (ln_e, batch) = (mean.ln_change, reading.trial.wanted.batch);
-    let ln_e_limit = -(SIDE_SHARE * reading.trial.wanted.alpha).ln();
+    let (ln_e, batch) = (mean.ln_change, reading.trial.expected.batch);
+    let ln_e_limit = -(SIDE_SHARE * reading.trial.expected.alpha).ln();
     let is_refuted = (ln_e >= ln_e_limit || mean.has_failed()) && mean.is_founded();
     let change = mean.obvious_change().filter(|_| is_refuted);
     let Some(change) = change else {
@@ -50,36 +50,37 @@ pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Opt
 
 /// Finds dependence of draws: half of the level is for adjacent draws, half for replays.
 pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
-    let ln_e_limit = (2.0 / reading.trial.wanted.alpha).ln();
-    let mut found = IndependenceFinding {
+    let ln_e_limit = (2.0 / reading.trial.expected.alpha).ln();
+    let mut finding = IndependenceFinding {
         ln_e: reading.independence.ln_e(),
         ln_e_limit,
         ..IndependenceFinding::default()
     };
     // Draws with a claimed variance of 0 are all equal.
     if reading.mean.is_none() {
-        return found;
+        return finding;
     }
-    if found.ln_e >= ln_e_limit
+    if finding.ln_e >= ln_e_limit
         && let Some(strongest) = reading.independence.strongest(ln_e_limit)
     {
         let (scale, lag, r) = (strongest.scale, strongest.lag, strongest.correlation);
-        (found.scale, found.lag, found.correlation) = (Some(scale), Some(lag), Some(r));
-        found.batch = reading.independence.free_batch(ln_e_limit);
-        found.reason = Some(Reason::Dependent(match scale {
+        (finding.scale, finding.lag, finding.correlation) = (Some(scale), Some(lag), Some(r));
+        finding.batch = reading.independence.free_batch(ln_e_limit);
+        finding.reason = Some(Reason::Dependent(match scale {
             1 => format!("correlation at lag {lag} is {r:.2}"),
             _ => format!("correlation between sums of {scale} consecutive draws is {r:.2}"),
         }));
     }
     if let Some(step) = reading.steps.found() {
-        found.reason = Some(Reason::Dependent(an_index(step)));
-        return found;
+        finding.reason = Some(Reason::Dependent(an_index(step)));
+        return finding;
     }
     if let Some(Again { distance, times, ln_p, what }) = again(reading, ln_e_limit) {
-        (found.replay, found.repeats, found.replay_ln_p) = (Some(distance), Some(times), ln_p);
-        found.reason = Some(Reason::Dependent(what));
+        (finding.replay, finding.repeats, finding.replay_ln_p) =
+            (Some(distance), Some(times), ln_p);
+        finding.reason = Some(Reason::Dependent(what));
     }
-    found
+    finding
 }
 
 /// Describes draws that differ by one step from draw to draw.
@@ -135,7 +136,7 @@ struct Again {
 
 /// Finds a repetition of draws. Three searches share their half of the level; with averages, five do.
 fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
-    let batch = reading.trial.wanted.batch;
+    let batch = reading.trial.expected.batch;
     let searches: f64 = if batch == 1 { 3.0 } else { 5.0 };
     let limit = ln_e_limit + searches.ln();
     let unit = if batch == 1 { "draws" } else { "averages" };
@@ -161,7 +162,9 @@ fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
     let replay = replays.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let behind = reading.contents.as_ref().and_then(Contents::replay);
     let behind = behind.filter(|replay| replay.ln_p <= -limit);
-    replay.map(|found| said(found, batch, unit)).or(behind.map(|found| said(found, 1, "draws")))
+    replay
+        .map(|finding| said(finding, batch, unit))
+        .or(behind.map(|finding| said(finding, 1, "draws")))
 }
 
 /// Minimum number of averages that may be reported as alike.
@@ -233,10 +236,10 @@ impl Contents {
 
     /// Draws that repeat in other averages, at another place.
     pub(super) fn replay(&self) -> Option<Replay> {
-        let found = [self.replays.found(), self.sequences.found()].into_iter().flatten();
-        let across = |found: &Replay| {
-            found.distance > self.batch && !found.distance.is_multiple_of(self.batch)
+        let finding = [self.replays.found(), self.sequences.found()].into_iter().flatten();
+        let across = |finding: &Replay| {
+            finding.distance > self.batch && !finding.distance.is_multiple_of(self.batch)
         };
-        found.filter(across).min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+        finding.filter(across).min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
     }
 }

@@ -25,7 +25,9 @@ impl Scalar {
         let (verdict, reason) = self.verdict();
         // Large bets may decide before ε is chosen.
         let decided = (self.decision != Decision::Open).then(|| match self.quantity.tolerance {
-            Some(asked) => Design::asked(self.past.mean_square(), asked, self.quantity.floor),
+            Some(requested) => {
+                Design::asked(self.past.mean_square(), requested, self.quantity.floor)
+            }
             None => Design::new(self.past.mean_square(), self.quantity.cap, self.quantity.floor),
         });
         let gate = self
@@ -116,7 +118,7 @@ impl Scalar {
             remark: String::new(),
             ln_e: self.evidence.ln_e,
             limit: self.levels.ln_fail,
-            tolerance: self.quantity.tolerance.filter(|asked| off.abs() < *asked),
+            tolerance: self.quantity.tolerance.filter(|requested| off.abs() < *requested),
         }
     }
 

@@ -118,15 +118,15 @@ fn is_left(x: f64) -> bool {
 /// The number that comes ten times as often as any other, and its count; a count of 0 without such a number.
 fn most_frequent(mut values: Vec<f64>) -> (f64, usize) {
     order::ascend(&mut values);
-    let (mut most, mut second) = ((f64::NAN, 0), 0);
+    let (mut maximum, mut second) = ((f64::NAN, 0), 0);
     for group in values.chunk_by(|a, b| a == b) {
-        if group.len() > most.1 {
-            (most, second) = ((group[0], group.len()), most.1);
+        if group.len() > maximum.1 {
+            (maximum, second) = ((group[0], group.len()), maximum.1);
         } else {
             second = second.max(group.len());
         }
     }
-    if most.1 >= 10 * second { most } else { (f64::NAN, 0) }
+    if maximum.1 >= 10 * second { maximum } else { (f64::NAN, 0) }
 }
 
 #[cfg(test)]

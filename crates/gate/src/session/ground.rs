@@ -75,8 +75,9 @@ impl OfVariance {
     /// A new bound, where one is due and can be given.
     fn needed(&mut self, past: &Powers, ln_fail: f64) -> Option<f64> {
         let (before, bounds) = self.bounded;
-        let least = if self.ground == VarianceBound::Shown { BLOCK } else { 1 };
-        if matches!(self.ground, VarianceBound::Variance(_)) || past.draws() < least.max(2 * before)
+        let minimum = if self.ground == VarianceBound::Shown { BLOCK } else { 1 };
+        if matches!(self.ground, VarianceBound::Variance(_))
+            || past.draws() < minimum.max(2 * before)
         {
             return None;
         }

@@ -198,11 +198,11 @@ impl Judgement {
             pattern.dependence = true;
             return pattern;
         }
-        for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
+        for finding in self.findings.iter().filter(|result| result.verdict == Verdict::Fail) {
             pattern.note(finding.check, finding.gate.map(|gate| gate.mean));
         }
-        for found in self.distribution.iter().filter(|found| found.verdict == Verdict::Fail) {
-            pattern.note(found.check, None);
+        for result in self.distribution.iter().filter(|result| result.verdict == Verdict::Fail) {
+            pattern.note(result.check, None);
         }
         match self.fault {
             Some(InvalidDraw::Number | InvalidDraw::Range) => pattern.number = true,
@@ -247,18 +247,18 @@ impl Judgement {
         lines.extend(lookups(self).map(|text| ("lookups", text)));
         lines.extend(self.findings.iter().map(|finding| ("gate", gate(finding))));
         if let Some(drift) = &self.drift {
-            let (word, found, limit) = (drift.verdict.word(), drift.ln_e, drift.ln_e_limit);
+            let (word, result, limit) = (drift.verdict.word(), drift.ln_e, drift.ln_e_limit);
             let shown = match drift.verdict {
-                Verdict::Pass if found >= limit => ", but all draws are off, from the first on",
+                Verdict::Pass if result >= limit => ", but all draws are off, from the first on",
                 _ => "",
             };
             let text = format!(
                 "ln E = {} of {limit:.1} for a change of the mean{shown}: {word}",
-                ln(found)
+                ln(result)
             );
             lines.push(("drift", text));
         }
-        lines.extend(self.distribution.iter().map(|found| ("p-value", p_value(found))));
+        lines.extend(self.distribution.iter().map(|result| ("p-value", p_value(result))));
         lines.push(("order", order(&self.independence)));
         lines.extend(self.guarantees.iter().map(|promise| ("promise", promise.clone())));
         lines.push(("verdict", self.to_string()));
@@ -294,17 +294,17 @@ fn draws(judgement: &Judgement, name: &str) -> String {
 }
 
 fn lookups(judgement: &Judgement) -> Option<String> {
-    let (found, claimed) = (judgement.lookups?, judgement.predicted_lookups?);
-    Some(format!("{} a draw, {} expected", short(found, 8), short(claimed, 8)))
+    let (result, claimed) = (judgement.lookups?, judgement.predicted_lookups?);
+    Some(format!("{} a draw, {} expected", short(result, 8), short(claimed, 8)))
 }
 
 /// Describes the dependence of the draws.
-fn order(found: &IndependenceFinding) -> String {
-    let evidence = match found.replay_ln_p {
+fn order(result: &IndependenceFinding) -> String {
+    let evidence = match result.replay_ln_p {
         Some(ln_p) => format!("probability e^{ln_p:.1} or less"),
-        None => format!("ln E = {:.1} of {:.1}", found.ln_e, found.ln_e_limit),
+        None => format!("ln E = {:.1} of {:.1}", result.ln_e, result.ln_e_limit),
     };
-    match &found.reason {
+    match &result.reason {
         Some(reason) => format!("{evidence}: {reason}"),
         None => format!("{evidence} against independent draws: nothing found"),
     }
@@ -335,8 +335,8 @@ fn variance(judgement: &Judgement) -> Option<String> {
 }
 
 /// The test of a distribution.
-fn p_value(found: &DistributionFinding) -> String {
-    let DistributionFinding { check, what, verdict, p, draws, .. } = found;
+fn p_value(result: &DistributionFinding) -> String {
+    let DistributionFinding { check, what, verdict, p, draws, .. } = result;
     let (p, draws) = (short(*p, 3), count(*draws));
     format!("{check}: p = {p} for {what} after {draws} draws: {}", verdict.word())
 }

@@ -92,20 +92,20 @@ impl Session {
     /// The settings of the verdict are invalid for a claim.
     pub fn new(
         claims: &[Claim],
-        wanted: Options,
+        expected: Options,
         length: Option<u64>,
         taken: Option<TheoryClaims>,
     ) -> Result<Self, ClaimError> {
-        claim::check_alpha(wanted.alpha)?;
-        let wanted = Options { alpha: wanted.alpha / claims.len() as f64, ..wanted };
-        let most = wanted.most.unwrap_or(u64::MAX);
+        claim::check_alpha(expected.alpha)?;
+        let expected = Options { alpha: expected.alpha / claims.len() as f64, ..expected };
+        let maximum = expected.maximum.unwrap_or(u64::MAX);
         // A decision may end the draws earlier.
-        let certain = length.map(|length| length.min(most)).filter(|_| !wanted.stop_early);
+        let certain = length.map(|length| length.min(maximum)).filter(|_| !expected.stop_early);
         let mut background = taken
-            .map_or_else(Background::default, |taken| taken.background(&wanted, claims, certain));
+            .map_or_else(Background::default, |taken| taken.background(&expected, claims, certain));
         let reading = |(index, claim): (usize, &Claim)| {
             let lookups = claim.lookups.filter(|_| index == 0);
-            let trial = CheckedClaim::new(Claim { lookups, ..*claim }, wanted, length)?;
+            let trial = CheckedClaim::new(Claim { lookups, ..*claim }, expected, length)?;
             // The first reading tests the draw as a whole.
             Ok(Reading::new(trial, std::mem::take(&mut background)))
         };
@@ -253,20 +253,20 @@ pub trait Source {
     /// Reason why the draws end too early.
     type Error;
 
-    /// Adds the next draws to an empty block, at most `most` of them. Fewer come only at the end, none after it.
+    /// Adds the next draws to an empty block, at most `maximum` of them. Fewer come only at the end, none after it.
     ///
     /// # Errors
     ///
     /// The draws cannot be made or read.
-    fn fill(&mut self, block: &mut Block, most: usize) -> Result<(), Self::Error>;
+    fn fill(&mut self, block: &mut Block, maximum: usize) -> Result<(), Self::Error>;
 }
 
 /// Draws in memory, of one value each.
 impl Source for &[f64] {
     type Error = Infallible;
 
-    fn fill(&mut self, block: &mut Block, most: usize) -> Result<(), Infallible> {
-        let (now, later) = self.split_at(most.min(self.len()));
+    fn fill(&mut self, block: &mut Block, maximum: usize) -> Result<(), Infallible> {
+        let (now, later) = self.split_at(maximum.min(self.len()));
         block.push(&[now], &[]);
         *self = later;
         Ok(())
@@ -286,7 +286,7 @@ pub trait Sink {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Until {
     /// Largest number of draws.
-    pub most: Option<u64>,
+    pub maximum: Option<u64>,
     /// True to stop as soon as all is decided.
     pub is_decided: bool,
 }
@@ -311,7 +311,7 @@ pub fn drive<K: Sink, E>(
         if until.is_decided && !sink.is_open() {
             return Ok(Some(Stop::Decided));
         }
-        let left = until.most.map_or(u64::MAX, |most| most.saturating_sub(sink.draws()));
+        let left = until.maximum.map_or(u64::MAX, |maximum| maximum.saturating_sub(sink.draws()));
         if left == 0 {
             return Ok(Some(Stop::Limit));
         }
@@ -357,7 +357,7 @@ impl CheckedClaim {
     ///
     /// The errors of the source.
     pub fn judge<S: Source>(&self, source: &mut S) -> Result<Judgement, S::Error> {
-        let mut judged = Session::from(*self).judge(source, self.wanted.until())?;
+        let mut judged = Session::from(*self).judge(source, self.expected.until())?;
         Ok(judged.swap_remove(0))
     }
 

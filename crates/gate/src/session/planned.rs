@@ -28,7 +28,7 @@ pub struct PlannedQuantity {
     /// Variance, tolerance and δ, and the number of draws that these are planned for.
     pub design: Design,
     /// Number of draws that the largest admissible tolerance needs.
-    pub least: f64,
+    pub minimum: f64,
     /// Number of draws that a pass needs, where more than are planned.
     pub underpowered: Option<f64>,
 }
@@ -117,8 +117,8 @@ impl Quantity {
             let needed = needs(design.tolerance.min(widest));
             (needed > draws * (1.0 + 1e-6)).then_some(needed)
         };
-        let least = needs(Design::new(variance, widest, self.floor).tolerance);
-        PlannedQuantity { quantity: self, design, least, underpowered }
+        let minimum = needs(Design::new(variance, widest, self.floor).tolerance);
+        PlannedQuantity { quantity: self, design, minimum, underpowered }
     }
 }
 
@@ -142,8 +142,8 @@ impl PlannedQuantity {
     /// The numbers at the last look.
     pub fn finding(&self, trail: &Trail, levels: Levels) -> GateFinding {
         let seen = (trail.mean, trail.draws);
-        let found = levels.finding(&self.design, trail.evidence, seen, trail.decision);
-        GateFinding { needed: self.underpowered, ..found }
+        let result = levels.finding(&self.design, trail.evidence, seen, trail.decision);
+        GateFinding { needed: self.underpowered, ..result }
     }
 
     /// Reason why the plan is too short for a pass; `None` if it is long enough.

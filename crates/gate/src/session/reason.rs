@@ -273,8 +273,8 @@ impl fmt::Display for Reason {
             ),
             Self::UnknownSpread { check, what, draws, tolerance, missing } => {
                 missing.write(f, (*check, what), *draws)?;
-                tolerance.map_or(Ok(()), |asked| {
-                    write!(f, "; the tolerance of {asked:.1e} is not tested without that")
+                tolerance.map_or(Ok(()), |requested| {
+                    write!(f, "; the tolerance of {requested:.1e} is not tested without that")
                 })
             }
             Self::TooFewPlanned { what, needed, .. } if needed.is_finite() => {
@@ -391,7 +391,9 @@ fn cure(check: CheckId) -> &'static str {
 
 fn below(tolerance: Option<f64>) -> String {
     let why = "which is what a pass must exclude: a bias that is shown fails";
-    tolerance.map_or(String::new(), |asked| format!("; below the tolerance of {asked:.1e}, {why}"))
+    tolerance.map_or(String::new(), |requested| {
+        format!("; below the tolerance of {requested:.1e}, {why}")
+    })
 }
 
 fn excluded_bias(excluded: Option<f64>) -> String {

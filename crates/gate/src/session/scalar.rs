@@ -135,7 +135,7 @@ impl Scalar {
         let chosen = left.map_or(self.quantity.usual, chosen).min(self.quantity.cap);
         // The bets on a range need no narrow ε.
         let design = match self.quantity.tolerance {
-            Some(asked) => Design::asked(variance, asked, self.quantity.floor),
+            Some(requested) => Design::asked(variance, requested, self.quantity.floor),
             None if by_range.is_some() => Design::asked(variance, chosen, self.quantity.floor),
             None => Design::new(variance, chosen, self.quantity.floor),
         };
@@ -159,8 +159,8 @@ impl Scalar {
         let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
         let variance = shown.min(ground.widest());
         // A very narrow range does not narrow the tolerance.
-        let asked = self.quantity.tolerance.unwrap_or(self.quantity.cap);
-        let variance = if variance > 0.0 { variance } else { 16.0 * asked * asked };
+        let requested = self.quantity.tolerance.unwrap_or(self.quantity.cap);
+        let variance = if variance > 0.0 { variance } else { 16.0 * requested * requested };
         if (draws > 0.0 || is_asked) && variance.is_finite() {
             self.start(variance);
         }
@@ -251,10 +251,10 @@ impl Scalar {
 
     /// Returns whether more draws may change the decision, which is then final.
     pub(super) fn is_open(&self) -> bool {
-        let most = self.planned.unwrap_or(UNPLANNED);
+        let maximum = self.planned.unwrap_or(UNPLANNED);
         let limit = match &self.design {
             Some(design) if self.is_promised => design.draws() * gate::HORIZON / gate::PLANNED,
-            _ => most,
+            _ => maximum,
         };
         self.decision == Decision::Open && (self.past.draws() as f64) < limit
     }

@@ -39,7 +39,7 @@ pub trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     /// # Errors
     ///
     /// The reason why nothing is tested, as a sentence.
-    fn tests(&self, asked: TestRequest) -> Result<Box<dyn Tests>, String>;
+    fn tests(&self, requested: TestRequest) -> Result<Box<dyn Tests>, String>;
 }
 
 /// Tests of a distribution that take draws.
@@ -128,7 +128,7 @@ impl TheoryClaims<'_> {
     /// a value, `length` the number of draws, where it is known and no decision ends them earlier.
     pub(super) fn background(
         self,
-        wanted: &Options,
+        expected: &Options,
         claims: &[Claim],
         length: Option<u64>,
     ) -> Background {
@@ -143,13 +143,13 @@ impl TheoryClaims<'_> {
         let untested = |why: &str| format!("the distribution is not tested: {why}");
         if is_mean_only {
             background.notes.push(untested("of theory the mean alone is taken"));
-        } else if wanted.batch > 1 {
+        } else if expected.batch > 1 {
             background.notes.push(untested("averages of draws have another one"));
         } else {
-            let alpha = SIDE_SHARE * wanted.alpha;
+            let alpha = SIDE_SHARE * expected.alpha;
             let rounding = claims.first().map_or(0.0, |claim| claim.rounding);
-            let asked = TestRequest { alpha, length, has_lookups, rounding, values };
-            match theory.distribution.tests(asked) {
+            let requested = TestRequest { alpha, length, has_lookups, rounding, values };
+            match theory.distribution.tests(requested) {
                 Ok(tests) => background.tests = Some(tests),
                 Err(why) => background.notes.push(why),
             }

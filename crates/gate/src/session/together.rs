@@ -99,11 +99,11 @@ mod tests {
     fn holm_fails_both_sides_pass_and_e_bh_lists() {
         let of = |ln_e: f64, ln_p| Evidence { ln_e, ln_pass: [5.0, ln_p] };
         // ln(3/0.01) = 5.70 for the largest, then ln(2/0.01) = 5.30; e-BH at 5 %: ln(3/0.1) = 3.40 for two.
-        let found = decide_together(&[of(5.8, 0.0), of(5.2, 4.7), of(0.0, 4.5)], 0.01);
-        let verdicts: Vec<Verdict> = found.iter().map(|found| found.verdict()).collect();
+        let finding = decide_together(&[of(5.8, 0.0), of(5.2, 4.7), of(0.0, 4.5)], 0.01);
+        let verdicts: Vec<Verdict> = finding.iter().map(|finding| finding.verdict()).collect();
         assert_eq!(verdicts, [Verdict::Fail, Verdict::Pass, Verdict::Inconclusive]);
         assert_eq!(
-            found.iter().map(|found| found.is_listed).collect::<Vec<_>>(),
+            finding.iter().map(|finding| finding.is_listed).collect::<Vec<_>>(),
             [true, true, false]
         );
     }

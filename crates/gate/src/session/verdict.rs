@@ -47,8 +47,8 @@ impl Reasons {
             (Verdict::Fail, failing),
             (Verdict::Inconclusive, open),
         ];
-        let found = decisive.into_iter().find(|(_, reasons)| !reasons.is_empty());
-        let (verdict, reasons) = found.unwrap_or((Verdict::Pass, passing));
+        let result = decisive.into_iter().find(|(_, reasons)| !reasons.is_empty());
+        let (verdict, reasons) = result.unwrap_or((Verdict::Pass, passing));
         (verdict, reasons.join("; "))
     }
 }
@@ -100,7 +100,7 @@ pub fn is_by_spread(about_truth: f64, about_mean: f64) -> bool {
 /// The verdict of the whole, and its guarantees.
 pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     let off = judgement.drift.as_ref().and_then(|drift| off_without_change(reading, drift));
-    let mean = judgement.findings.iter_mut().find(|found| found.check == CheckId::Mean);
+    let mean = judgement.findings.iter_mut().find(|result| result.check == CheckId::Mean);
     if let (Some(reason), Some(mean)) = (off, mean.filter(|mean| mean.verdict != Verdict::Fail)) {
         (mean.verdict, mean.reason) = (Verdict::Fail, Some(reason));
     }
@@ -110,10 +110,10 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
         withhold(judgement);
     }
     let of = |verdict: Verdict| -> Vec<String> {
-        let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
-        let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
-        let tests = judgement.distribution.iter().map(|found| (found.verdict, &found.reason));
-        let alike = scalars.chain(drift).chain(tests).filter(|(found, _)| *found == verdict);
+        let drift = judgement.drift.as_ref().map(|result| (result.verdict, &result.reason));
+        let scalars = judgement.findings.iter().map(|result| (result.verdict, &result.reason));
+        let tests = judgement.distribution.iter().map(|result| (result.verdict, &result.reason));
+        let alike = scalars.chain(drift).chain(tests).filter(|(result, _)| *result == verdict);
         alike.filter_map(|(_, reason)| reason.as_ref().map(Reason::to_string)).collect()
     };
     let refuted = reading.refuted.as_ref();
@@ -132,24 +132,24 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
 
 /// Names a refuted variance before the mean, and lets a mean that deviates only in units of it not fail.
 fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
-    let place = |check: CheckId| judgement.findings.iter().position(|found| found.check == check);
+    let place = |check: CheckId| judgement.findings.iter().position(|result| result.check == check);
     let (Some(at), Some(variance)) = (place(CheckId::Mean), place(CheckId::Variance)) else {
         return;
     };
-    let found = &judgement.findings[variance];
-    if found.verdict != Verdict::Fail {
+    let result = &judgement.findings[variance];
+    if result.verdict != Verdict::Fail {
         return;
     }
-    let refuted = (found.verdict, found.gate);
+    let refuted = (result.verdict, result.gate);
     let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
     // Squares are taken about the truth: where that is not the mean, they are larger by the square of the bias.
     let about_mean = judgement.variance_ratio.map_or(f64::INFINITY, |ratio| ratio - 1.0);
     let is_by_mean = |gate: &GateFinding| gate.mean > 0.0 && about_mean <= gate.tolerance;
     let mean_fails = judgement.findings[at].verdict == Verdict::Fail;
-    if let Some(gate) = found.gate.filter(|gate| is_off && mean_fails && is_by_mean(gate)) {
-        let found = &mut judgement.findings[variance];
-        found.verdict = Verdict::Inconclusive;
-        found.reason = Some(Reason::SquaresByMean { about_truth: gate.mean, about_mean });
+    if let Some(gate) = result.gate.filter(|gate| is_off && mean_fails && is_by_mean(gate)) {
+        let result = &mut judgement.findings[variance];
+        result.verdict = Verdict::Inconclusive;
+        result.reason = Some(Reason::SquaresByMean { about_truth: gate.mean, about_mean });
         return;
     }
     // A mean that passes keeps its verdict, since the variance fails the draws.
@@ -172,9 +172,9 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
 /// Withdraws the findings of the gate: they hold for independent draws only.
 fn withhold(judgement: &mut Judgement) {
     let not_judged = |what: &'static str| Some(Reason::NotJudged(what.into()));
-    for found in &mut judgement.findings {
-        found.verdict = Verdict::Inconclusive;
-        found.reason = not_judged(match found.check {
+    for result in &mut judgement.findings {
+        result.verdict = Verdict::Inconclusive;
+        result.reason = not_judged(match result.check {
             CheckId::Mean => "the mean",
             CheckId::Variance => "the variance",
             _ => "the number of lookups",
@@ -183,13 +183,13 @@ fn withhold(judgement: &mut Judgement) {
     if let Some(drift) = &mut judgement.drift {
         (drift.verdict, drift.reason) = (Verdict::Inconclusive, not_judged("the drift"));
     }
-    for found in &mut judgement.distribution {
-        (found.verdict, found.reason) = (Verdict::Inconclusive, not_judged("the distribution"));
+    for result in &mut judgement.distribution {
+        (result.verdict, result.reason) = (Verdict::Inconclusive, not_judged("the distribution"));
     }
 }
 
-fn dependent(found: &IndependenceFinding) -> String {
-    let cure = match (found.replay, found.batch) {
+fn dependent(result: &IndependenceFinding) -> String {
+    let cure = match (result.replay, result.batch) {
         (Some(_), _) => {
             "give each draw once, and give each pass and thread a seed of its own".into()
         }
@@ -199,7 +199,7 @@ fn dependent(found: &IndependenceFinding) -> String {
         ),
         (None, None) => "give one average a pass, or judge averages (batch)".to_owned(),
     };
-    let reason = found.reason.as_ref().map_or(String::new(), Reason::to_string);
+    let reason = result.reason.as_ref().map_or(String::new(), Reason::to_string);
     format!("{reason}; the mean is not judged: {cure}")
 }
 
@@ -224,8 +224,8 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
             format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding{unused}")
         }
         InvalidDraw::Lookups => {
-            let wanted = claim.lookups.map_or(0.0, |lookups| lookups.mean);
-            format!("lookups: draw {index} takes {value} lookups, not {wanted}")
+            let expected = claim.lookups.map_or(0.0, |lookups| lookups.mean);
+            format!("lookups: draw {index} takes {value} lookups, not {expected}")
         }
         InvalidDraw::Distance => format!("distance: draw {index} is {value}, which is no distance"),
     };
@@ -239,9 +239,9 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
 
 /// Reason why a tolerance of the mean is not used.
 fn unused_tolerance(reading: &Reading) -> Option<String> {
-    let asked = reading.trial.wanted.tolerance.filter(|_| reading.mean.is_none())?;
+    let requested = reading.trial.expected.tolerance.filter(|_| reading.mean.is_none())?;
     Some(format!(
-        "the tolerance of {asked:.1e} is not used: the variance given allows rounding alone; leave the variance \
+        "the tolerance of {requested:.1e} is not used: the variance given allows rounding alone; leave the variance \
          out, or give a larger one"
     ))
 }
@@ -265,7 +265,7 @@ fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
     if reading.trial.is_faint() && !reading.trial.is_certain() {
         said.push("the variance is not tested: rounding hides it".into());
     }
-    if variance.is_some_and(|found| found.is_estimated) {
+    if variance.is_some_and(|result| result.is_estimated) {
         said.push(
             "kurtosis estimated: the variance fails only where it is too large, which needs no \
              kurtosis; it passes by the squares that were drawn, and rare ones that were not may \
@@ -312,7 +312,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
         format!("{draws} of the right mean")
     };
     let who = match (claim.variance, claim.kurtosis, mean.is_estimated) {
-        (None, Some(most), _) => format!("{correct} with a kurtosis of {most} at most"),
+        (None, Some(maximum), _) => format!("{correct} with a kurtosis of {maximum} at most"),
         (None, None, true) => {
             let shown = judgement.kurtosis.map_or("no spread".to_owned(), |k| format!("{k:.3}"));
             let cure = "give the variance, the range or the largest kurtosis for a promise";
@@ -322,9 +322,9 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
                  that were not drawn may carry it; {cure}"
             );
             return match mean.assumed_kurtosis {
-                Some(most) if mean.verdict == Verdict::Pass => format!(
+                Some(maximum) if mean.verdict == Verdict::Pass => format!(
                     "{nothing}; a mean off by the tolerance passes with probability {} at most if the \
-                     kurtosis is {most:.0} at most (they show {shown}); the variance is not tested",
+                     kurtosis is {maximum:.0} at most (they show {shown}); the variance is not tested",
                     judgement.beta
                 ),
                 _ => nothing,
@@ -345,7 +345,7 @@ fn missing(judgement: &Judgement, mean: &ScalarFinding) -> Option<String> {
             Some(format!("variance assumed: {miss}, if the variance is right"))
         }
         None => Some(miss),
-        Some(found) if found.verdict == Verdict::Pass => {
+        Some(result) if result.verdict == Verdict::Pass => {
             Some(format!("{miss}; the variance it relies on passes"))
         }
         Some(_) if mean.verdict == Verdict::Pass => {

@@ -193,9 +193,9 @@ mod tests {
         let y: Vec<f64> =
             uniforms(1, 1003).iter().map(|u| u.mul_add(4.0, -3.0).max(-1e-9)).collect();
         let gains = bets.gains(&y);
-        for (factor, found) in bets.factors.iter().zip(&gains.against) {
+        for (factor, result) in bets.factors.iter().zip(&gains.against) {
             let sum: f64 = y.iter().map(|y| (factor.offset + factor.slope * y).ln()).sum();
-            assert!((found - sum).abs() <= 1e-12 * (1.0 + sum.abs()), "{found} {sum}");
+            assert!((result - sum).abs() <= 1e-12 * (1.0 + sum.abs()), "{result} {sum}");
         }
     }
 
@@ -242,12 +242,12 @@ mod tests {
     #[test]
     fn rare_events_that_come_too_often_are_refuted_and_due_ones_are_not() {
         // Bernoulli draws of probability 1e-4, in units of it.
-        for (chance, is_failed) in [(1e-4, false), (4e-4, true)] {
+        for (probability, is_failed) in [(1e-4, false), (4e-4, true)] {
             let bets = Bets::new([-1.0, 9999.0], None, 0.0);
             let mut capital = Capital::default();
             let y = uniforms(3, 200_000)
                 .iter()
-                .map(|&u| if u < chance { 9999.0 } else { -1.0 })
+                .map(|&u| if u < probability { 9999.0 } else { -1.0 })
                 .collect::<Vec<_>>();
             capital.add(&bets.gains(&y));
             assert_eq!(capital.ln_e() > 1000f64.ln(), is_failed, "{}", capital.ln_e());

@@ -66,8 +66,8 @@ impl Chance {
 }
 
 /// `P(X ≥ k)`, by terms that fall from `k` on where `k ≥ np`.
-fn above(k: f64, n: f64, chance: Chance) -> f64 {
-    let odds = chance.p / chance.q;
+fn above(k: f64, n: f64, probability: Chance) -> f64 {
+    let odds = probability.p / probability.q;
     let (mut sum, mut term, mut j) = (1.0, 1.0, k);
     while j < n {
         term *= (n - j) / (j + 1.0) * odds;
@@ -77,27 +77,27 @@ fn above(k: f64, n: f64, chance: Chance) -> f64 {
             break;
         }
     }
-    ln_mass(k, n, chance).exp() * sum
+    ln_mass(k, n, probability).exp() * sum
 }
 
 /// `P(X ≤ k)`: the probability of `n − k` failures or more.
-fn below(k: f64, n: f64, chance: Chance) -> f64 {
-    above(n - k, n, chance.other())
+fn below(k: f64, n: f64, probability: Chance) -> f64 {
+    above(n - k, n, probability.other())
 }
 
 /// `ln P(X = k)`: deviances and Stirling remainders, so that no digits cancel.
-fn ln_mass(k: f64, n: f64, chance: Chance) -> f64 {
+fn ln_mass(k: f64, n: f64, probability: Chance) -> f64 {
     if k == 0.0 {
-        return n * (-chance.p).ln_1p();
+        return n * (-probability.p).ln_1p();
     }
     if k == n {
-        return n * (-chance.q).ln_1p();
+        return n * (-probability.q).ln_1p();
     }
     remainder(n)
         - remainder(k)
         - remainder(n - k)
-        - deviance(k, n * chance.p)
-        - deviance(n - k, n * chance.q)
+        - deviance(k, n * probability.p)
+        - deviance(n - k, n * probability.q)
         - 0.5 * (2.0 * PI * k * (n - k) / n).ln()
 }
 
@@ -158,9 +158,9 @@ mod tests {
             (500_000_000, 1_000_000_000, 0.99, 0.499_959_272_062_762_64, 0.500_040_727_937_237_4),
         ];
         for (k, n, level, low, high) in known {
-            let found = interval(k, n, level);
-            assert!((found.0 / low - 1.0).abs() < 1e-12, "{k} of {n}: {found:?}");
-            assert!((found.1 / high - 1.0).abs() < 1e-12, "{k} of {n}: {found:?}");
+            let result = interval(k, n, level);
+            assert!((result.0 / low - 1.0).abs() < 1e-12, "{k} of {n}: {result:?}");
+            assert!((result.1 / high - 1.0).abs() < 1e-12, "{k} of {n}: {result:?}");
         }
     }
 
@@ -192,13 +192,13 @@ mod tests {
     fn the_interval_covers_as_often_as_it_says() {
         // All outcomes of 40 trials, each with its probability.
         for p in [0.003, 0.11, 0.5, 0.93] {
-            let chance = Chance { p, q: 1.0 - p };
+            let probability = Chance { p, q: 1.0 - p };
             let covered = |k: &u64| {
                 let (low, high) = interval(*k, 40, 0.99);
                 low <= p && p <= high
             };
             let cover: f64 =
-                (0..=40).filter(covered).map(|k| ln_mass(k as f64, 40.0, chance).exp()).sum();
+                (0..=40).filter(covered).map(|k| ln_mass(k as f64, 40.0, probability).exp()).sum();
             assert!((0.99..=1.0 + 1e-12).contains(&cover), "{p}: {cover}");
         }
     }

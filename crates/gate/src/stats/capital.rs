@@ -41,7 +41,7 @@ struct Later {
 
 /// ln of the mean of `e^x`; NaN if one of them is NaN.
 pub fn ln_mean_exp(x: &[f64]) -> f64 {
-    let largest = x.iter().fold(f64::NEG_INFINITY, |most, &x| most.max(x));
+    let largest = x.iter().fold(f64::NEG_INFINITY, |maximum, &x| maximum.max(x));
     if x.iter().any(|x| x.is_nan()) {
         return f64::NAN;
     }

@@ -242,10 +242,10 @@ mod tests {
     fn agree(y: &[f64]) {
         let mut sums = PsiSums::<3>::default();
         sums.absorb(y, &ARGUMENTS);
-        for (found, argument) in sums.totals().iter().zip(ARGUMENTS) {
+        for (result, argument) in sums.totals().iter().zip(ARGUMENTS) {
             let terms = || y.iter().map(|y| psi(argument.slope * y + argument.shift));
             let (expected, size) = (terms().sum::<f64>(), terms().map(f64::abs).sum::<f64>());
-            assert!((found - expected).abs() <= 1e-13 * (1.0 + size), "{found} {expected}");
+            assert!((result - expected).abs() <= 1e-13 * (1.0 + size), "{result} {expected}");
         }
     }
 

@@ -55,7 +55,8 @@ fn tails(statistic: f64, degrees: f64) -> [f64; 2] {
     if degrees > MANY && degrees.is_finite() && statistic > 0.0 && statistic.is_finite() {
         return expanded(0.5 * statistic, 0.5 * degrees);
     }
-    ChiSquared::new(degrees).map_or([f64::NAN; 2], |law| [law.sf(statistic), law.cdf(statistic)])
+    ChiSquared::new(degrees)
+        .map_or([f64::NAN; 2], |density| [density.sf(statistic), density.cdf(statistic)])
 }
 
 /// `[Q(a, x), P(a, x)]` for large a.
@@ -129,10 +130,10 @@ fn merged(
 /// `2 min(P(N ≤ count), P(N ≥ count))` of a binomial number N.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
 fn two_bins(count: f64, probability: f64, draws: f64) -> f64 {
-    Binomial::new(probability.clamp(0.0, 1.0), draws as u64).map_or(f64::NAN, |law| {
+    Binomial::new(probability.clamp(0.0, 1.0), draws as u64).map_or(f64::NAN, |density| {
         let count = count as u64;
-        let above = if count == 0 { 1.0 } else { law.sf(count - 1) };
-        (2.0 * law.cdf(count).min(above)).min(1.0)
+        let above = if count == 0 { 1.0 } else { density.sf(count - 1) };
+        (2.0 * density.cdf(count).min(above)).min(1.0)
     })
 }
 
@@ -190,10 +191,10 @@ mod tests {
         for z in [-7.0, -3.0, -0.1, 0.0, 0.1, 3.0, 7.0] {
             let degrees: f64 = 2e4;
             let statistic = degrees + z * (2.0 * degrees).sqrt();
-            let law = ChiSquared::new(degrees).expect("a law");
+            let density = ChiSquared::new(degrees).expect("a law");
             let [above, below] = tails(statistic, degrees);
-            assert!((above / law.sf(statistic) - 1.0).abs() < 1e-9, "{z}: {above}");
-            assert!((below / law.cdf(statistic) - 1.0).abs() < 1e-9, "{z}: {below}");
+            assert!((above / density.sf(statistic) - 1.0).abs() < 1e-9, "{z}: {above}");
+            assert!((below / density.cdf(statistic) - 1.0).abs() < 1e-9, "{z}: {below}");
         }
         // Far out the tail is 0, and never negative.
         assert_eq!(tails(4e9, 1e9), [0.0, 1.0]);

@@ -145,26 +145,26 @@ mod tests {
     fn an_overlap_is_found_at_its_lag() {
         let whole = stream(0, 30_000);
         let (a, b) = (&whole[..20_000], &whole[7..]);
-        let found = lagged(a, b, -16..=16).expect("pairs");
-        assert_eq!(found.lag, -7);
-        assert!(found.p_value < 1e-300 && found.z > 100.0);
-        let found = lagged(b, a, -16..=16).expect("pairs");
-        assert_eq!(found.lag, 7);
+        let result = lagged(a, b, -16..=16).expect("pairs");
+        assert_eq!(result.lag, -7);
+        assert!(result.p_value < 1e-300 && result.z > 100.0);
+        let result = lagged(b, a, -16..=16).expect("pairs");
+        assert_eq!(result.lag, 7);
     }
 
     #[test]
     fn independent_streams_have_small_correlations() {
-        let found = lagged(&stream(0, 100_000), &stream(1, 100_000), -64..=64).expect("pairs");
-        assert!(found.p_value > 1e-6, "{found:?}");
+        let result = lagged(&stream(0, 100_000), &stream(1, 100_000), -64..=64).expect("pairs");
+        assert!(result.p_value > 1e-6, "{result:?}");
     }
 
     #[test]
     fn a_correlation_by_hand() {
         // Lag 1: 1·5 + 2·6 over √2; two lags are tested.
-        let found = lagged(&[1.0, 2.0, 9.0], &[0.0, 5.0, 6.0], 1..=2).expect("pairs");
-        assert_eq!(found.lag, 1);
-        assert!((found.z - 17.0 / 2.0f64.sqrt()).abs() < 1e-12);
-        let found = lagged(&[1.0], &[2.0], 0..=0).expect("a pair");
-        assert!((found.p_value - 0.045_500_263_896_358_4).abs() < 1e-12);
+        let result = lagged(&[1.0, 2.0, 9.0], &[0.0, 5.0, 6.0], 1..=2).expect("pairs");
+        assert_eq!(result.lag, 1);
+        assert!((result.z - 17.0 / 2.0f64.sqrt()).abs() < 1e-12);
+        let result = lagged(&[1.0], &[2.0], 0..=0).expect("a pair");
+        assert!((result.p_value - 0.045_500_263_896_358_4).abs() < 1e-12);
     }
 }

@@ -103,13 +103,13 @@ impl Gathered {
         };
         let joined = |ln_l: f64, ln_m: f64| ln_m + ln_mean_exp(&[0.0, ln_l]);
         // L falls with V and M grows: of each interval the lower of both ends. Below V̂, M is 1/5 or more.
-        let mut least = joined(of_mean(1.0), -(STAKES.len() as f64).ln());
+        let mut minimum = joined(of_mean(1.0), -(STAKES.len() as f64).ln());
         let mut excess = 1.0;
         while excess < LARGEST {
-            least = least.min(joined(of_mean(excess * STEP), of_variance(1.0 / excess)));
+            minimum = minimum.min(joined(of_mean(excess * STEP), of_variance(1.0 / excess)));
             excess *= STEP;
         }
-        least.min(joined(f64::NEG_INFINITY, of_variance(1.0 / excess)))
+        minimum.min(joined(f64::NEG_INFINITY, of_variance(1.0 / excess)))
     }
 }
 
@@ -132,16 +132,16 @@ mod tests {
 
     #[test]
     fn correct_means_keep_the_level_and_wrong_ones_do_not() {
-        let (mut high, mut found) = (0, 0);
+        let (mut high, mut result) = (0, 0);
         for seed in 0..400 {
             let estimate = estimated(1000 + seed, 256);
             let y = |shift: f64| draws(seed, 200, |u| -(1.0 - u).ln() - 1.0 + shift);
             // P(E ≥ 20) ≤ 1/20 by Markov's inequality: 20 of 400 on average at most.
             high += usize::from(estimate.ln_e(&y(0.0), 0.0) >= 20f64.ln());
             // 0.5 √200 = 7 standard errors.
-            found += usize::from(estimate.ln_e(&y(0.5), 0.0) >= 20f64.ln());
+            result += usize::from(estimate.ln_e(&y(0.5), 0.0) >= 20f64.ln());
         }
-        assert!(high <= 20 && found >= 380, "{high} {found}");
+        assert!(high <= 20 && result >= 380, "{high} {result}");
     }
 
     #[test]

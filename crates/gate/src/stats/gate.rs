@@ -196,11 +196,11 @@ mod tests {
     use numeric::rng::{Address, unit};
 
     /// Uniform y of variance 1 about a mean, to a decision.
-    fn decide(seed: u64, mean: f64, design: &Design, most: u64) -> (Decision, u64) {
+    fn decide(seed: u64, mean: f64, design: &Design, maximum: u64) -> (Decision, u64) {
         let mut rng = Address { seed, experiment: 0, block: 0, lane: 0 }.stream();
         let mut sums = GateSums::default();
         let mut draws = 0;
-        while draws < most {
+        while draws < maximum {
             let y: Vec<f64> =
                 (0..256).map(|_| 12f64.sqrt() * (unit(&mut rng) - 0.5) + mean).collect();
             sums.absorb(&y, &design.arguments());

@@ -219,13 +219,13 @@ impl Independence {
 
     /// ln E.
     pub fn ln_e(&self) -> f64 {
-        super::capital::ln_mean_exp(&self.questions().map(|found| found.ln_e).collect::<Vec<_>>())
+        super::capital::ln_mean_exp(&self.questions().map(|result| result.ln_e).collect::<Vec<_>>())
     }
 
     /// The first dependence with evidence of its own that reaches `ln_limit`, else the strongest.
     pub fn strongest(&self, ln_limit: f64) -> Option<Dependence> {
         let all = (LAGS + SCALES) as f64;
-        let first = self.questions().find(|found| found.ln_e >= ln_limit + all.ln());
+        let first = self.questions().find(|result| result.ln_e >= ln_limit + all.ln());
         first.or_else(|| self.questions().max_by(|a, b| a.ln_e.total_cmp(&b.ln_e)))
     }
 

@@ -87,8 +87,8 @@ impl Replays {
         self.kept.push((bits, place));
         if self.kept.len() >= MAX_ENTRIES {
             self.bits += 1;
-            let least = self.bits;
-            self.kept.retain(|(bits, _)| hash(*bits).leading_zeros() >= least);
+            let minimum = self.bits;
+            self.kept.retain(|(bits, _)| hash(*bits).leading_zeros() >= minimum);
         }
     }
 
@@ -102,8 +102,8 @@ impl Replays {
             .map(|group| (group.len() as u64, group[1].1 - group[0].1))
             .collect();
         groups.sort_unstable();
-        let most = groups.last()?.0.next_power_of_two().ilog2();
-        let of = (1..=most).filter_map(|k| self.most_frequent(&groups, k));
+        let maximum = groups.last()?.0.next_power_of_two().ilog2();
+        let of = (1..=maximum).filter_map(|k| self.most_frequent(&groups, k));
         of.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
     }
 

@@ -123,9 +123,9 @@ impl Scheme {
         values.sort_unstable();
         let n = values.len() as f64;
         let counts = || values.chunk_by(|a, b| a == b).map(|group| (group.len() as f64, group[0]));
-        let (most, commonest) = counts().max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let filler = (2.0 * most > n).then_some(commonest);
-        let others = n - filler.map_or(0.0, |_| most);
+        let (maximum, commonest) = counts().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let filler = (2.0 * maximum > n).then_some(commonest);
+        let others = n - filler.map_or(0.0, |_| maximum);
         let same: f64 = counts()
             .filter(|(_, value)| Some(*value) != filler)
             .map(|(count, _)| count * (count - 1.0))
@@ -139,9 +139,9 @@ impl Scheme {
             return None;
         }
         // Windows of a file of 16 blocks are then equal by accident once in 16 such files.
-        let wanted = 2.0 * (16.0 * n).log2() + 4.0;
+        let expected = 2.0 * (16.0 * n).log2() + 4.0;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
-        let window = ((wanted / bits.max(0.5)).ceil() as usize).clamp(1, LONGEST);
+        let window = ((expected / bits.max(0.5)).ceil() as usize).clamp(1, LONGEST);
         let bet = window.max(SHORTEST_BET);
         let power = |n: usize| (0..n).fold(1, |power: u64, _| power.wrapping_mul(BASE));
         Some(Self { filler, window, bet, bases: [power(window), power(bet)] })
@@ -230,11 +230,11 @@ impl Sequences {
         });
         *kept = TokenWindow { next, draw: window.draw, token, count: kept.count + 1 };
         // A certain repetition needs few further windows, only for its numbers.
-        let most = if self.ln_e > CERTAIN { FEW_WINDOWS } else { MAX_WINDOWS };
-        while self.kept.len() >= most {
+        let maximum = if self.ln_e > CERTAIN { FEW_WINDOWS } else { MAX_WINDOWS };
+        while self.kept.len() >= maximum {
             self.bits += 1;
-            let least = self.bits;
-            self.kept.retain(|&window, _| hash(window).leading_zeros() >= least);
+            let minimum = self.bits;
+            self.kept.retain(|&window, _| hash(window).leading_zeros() >= minimum);
         }
     }
 
@@ -324,17 +324,17 @@ mod tests {
 
     #[test]
     fn sequences_of_few_values_that_come_again_are_found_at_their_distance() {
-        for (name, law) in LAWS {
+        for (name, distribution) in LAWS {
             for (period, n) in [(10_000, 20_000), (10_000, 170_000), (65_536, 131_072)] {
-                let once = draws(1, period, law);
+                let once = draws(1, period, distribution);
                 let many: Vec<f64> = once.iter().copied().cycle().take(n).collect();
                 // After other draws, and with an incomplete last repetition.
-                let late = [draws(2, 5000, law), many[..n - 99].to_vec()].concat();
+                let late = [draws(2, 5000, distribution), many[..n - 99].to_vec()].concat();
                 for list in [many, late] {
-                    let found = read(&list).found().unwrap_or_else(|| panic!("{name}, {period}"));
-                    assert_eq!(found.distance, period as u64, "{name}: {found:?}");
-                    assert!(found.ln_p < -15.0, "{name}: {found:?}");
-                    assert!(found.times.abs_diff((n / period) as u64) < 2, "{name}: {found:?}");
+                    let result = read(&list).found().unwrap_or_else(|| panic!("{name}, {period}"));
+                    assert_eq!(result.distance, period as u64, "{name}: {result:?}");
+                    assert!(result.ln_p < -15.0, "{name}: {result:?}");
+                    assert!(result.times.abs_diff((n / period) as u64) < 2, "{name}: {result:?}");
                 }
             }
         }
@@ -342,16 +342,16 @@ mod tests {
 
     #[test]
     fn short_periods_are_found() {
-        for (name, law) in LAWS {
+        for (name, distribution) in LAWS {
             for (period, times) in [(7, 3000), (100, 24), (100, 400), (1000, 17)] {
-                let once = draws(4, period, law);
+                let once = draws(4, period, distribution);
                 if once.iter().all(|x| *x == once[0]) || name == "a coin of 0.02" && period < 999 {
                     continue;
                 }
                 let many: Vec<f64> = once.iter().copied().cycle().take(times * period).collect();
-                let Some(found) = read(&many).found() else { panic!("{name}: {period}") };
-                assert!(found.ln_p < -9.0, "{name}, {period}: {found:?}");
-                assert_eq!(period as u64 % found.distance, 0, "{name}, {period}: {found:?}");
+                let Some(result) = read(&many).found() else { panic!("{name}: {period}") };
+                assert!(result.ln_p < -9.0, "{name}, {period}: {result:?}");
+                assert_eq!(period as u64 % result.distance, 0, "{name}, {period}: {result:?}");
             }
         }
     }
@@ -359,17 +359,17 @@ mod tests {
     #[test]
     fn independent_draws_are_no_repetition() {
         for seed in 10..30 {
-            for (name, law) in LAWS {
-                let list = draws(seed, 100_000, law);
-                let found = read(&list).found();
-                assert!(found.is_none_or(|found| found.ln_p > -7.0), "{name}: {found:?}");
+            for (name, distribution) in LAWS {
+                let list = draws(seed, 100_000, distribution);
+                let result = read(&list).found();
+                assert!(result.is_none_or(|result| result.ln_p > -7.0), "{name}: {result:?}");
                 let few = read(&list[..2000]).found();
-                assert!(few.is_none_or(|found| found.ln_p > -7.0), "{name}: {few:?}");
+                assert!(few.is_none_or(|result| result.ln_p > -7.0), "{name}: {few:?}");
             }
             for rare in [1e-3, 1e-5, 0.0] {
                 let list = draws(seed, 300_000, |u| f64::from(u8::from(u < rare)));
-                let found = read(&list).found();
-                assert!(found.is_none_or(|found| found.ln_p > -7.0), "{rare}: {found:?}");
+                let result = read(&list).found();
+                assert!(result.is_none_or(|result| result.ln_p > -7.0), "{rare}: {result:?}");
             }
         }
     }

@@ -202,7 +202,7 @@ impl Census<u32> {
     pub fn of(draws: &[u32]) -> Option<Self> {
         let largest = in_fused_code(
             #[inline(always)]
-            || draws.iter().fold(0, |most, &n| most.max(n)),
+            || draws.iter().fold(0, |maximum, &n| maximum.max(n)),
         ) as usize;
         if largest > LARGEST || largest * WORTH > draws.len() {
             return None;

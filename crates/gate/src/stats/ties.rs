@@ -74,8 +74,8 @@ mod tests {
             let mut coarse: Vec<f64> = fine.iter().map(|u| (u * steps).floor() / steps).collect();
             // An atom is left out.
             coarse.extend([0.25; 1000]);
-            let found = resolution(&mut coarse).expect("a resolution");
-            assert!((found - f64::from(bits)).abs() < 0.6, "{found} for {bits}");
+            let result = resolution(&mut coarse).expect("a resolution");
+            assert!((result - f64::from(bits)).abs() < 0.6, "{result} for {bits}");
         }
     }
 
@@ -87,8 +87,8 @@ mod tests {
         let mut coarse: Vec<f64> = fine.iter().map(|u| (u * m).floor() / m).collect();
         let expected = n - m * -(n * (-1.0f64 / m).ln_1p()).exp_m1();
         assert_eq!(ties(&mut fine), 0);
-        let found = ties(&mut coarse) as f64;
-        assert!((found - expected).abs() < 5.0 * expected.sqrt(), "{found} against {expected}");
+        let result = ties(&mut coarse) as f64;
+        assert!((result - expected).abs() < 5.0 * expected.sqrt(), "{result} against {expected}");
     }
 
     #[cfg(feature = "distributions")]

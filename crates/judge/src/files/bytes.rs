@@ -134,8 +134,8 @@ mod tests {
         let double = bytes(doubles().iter().map(|x| x.to_be_bytes()));
         let single = bytes(singles.iter().map(|x| x.to_be_bytes()));
         for (bytes, width) in [(&double, 8), (&single, 4)] {
-            let found = mistaken(bytes, width);
-            assert!(matches!(found, Some(Mistaken::Swapped(_))), "{found:?}");
+            let actual = mistaken(bytes, width);
+            assert!(matches!(actual, Some(Mistaken::Swapped(_))), "{actual:?}");
         }
     }
 

@@ -148,9 +148,9 @@ impl CsvTable {
             None => 0,
             Some(&Column::Index(index)) if index < count => index,
             Some(Column::Name(name)) => {
-                let mut found = (0..names.len()).filter(|&k| names[k] == name.trim());
-                if let Some(index) = found.next() {
-                    let count = 1 + found.count();
+                let mut actual = (0..names.len()).filter(|&k| names[k] == name.trim());
+                if let Some(index) = actual.next() {
+                    let count = 1 + actual.count();
                     if count > 1 {
                         let name = name.clone();
                         return Err(ForeignError::SameName { file: file(), name, count });
@@ -193,13 +193,14 @@ impl CsvTable {
 
     /// Returns the error of a table in which something else than commas separates columns: parts of the only field are
     /// numbers, or have the chosen name.
-    fn separated(&self, field: &str, wanted: Option<&str>) -> Option<ForeignError> {
+    fn separated(&self, field: &str, required: Option<&str>) -> Option<ForeignError> {
         let separators = [(';', "semicolons"), ('\t', "tabs"), (' ', "blanks")];
-        let is_part = |part: &str| number(part.as_bytes()).is_some() || Some(part.trim()) == wanted;
+        let is_part =
+            |part: &str| number(part.as_bytes()).is_some() || Some(part.trim()) == required;
         let is_split =
             |separator: char| field.contains(separator) && field.split(separator).any(is_part);
-        let found = separators.into_iter().find(|(separator, _)| is_split(*separator));
-        let (_, separator) = found.filter(|_| self.columns == 1)?;
+        let actual = separators.into_iter().find(|(separator, _)| is_split(*separator));
+        let (_, separator) = actual.filter(|_| self.columns == 1)?;
         Some(ForeignError::Separator { file: self.file.clone(), line: brief(field), separator })
     }
 
@@ -222,9 +223,9 @@ impl CsvTable {
     fn fault(&self, column: usize) -> ForeignError {
         let line = self.reader.get_ref().line(self.reader.position().byte());
         let file = self.file.clone();
-        let found = self.record.len() as u64;
-        if found != self.columns {
-            return ForeignError::RaggedLine { file, line, found, expected: self.columns };
+        let actual = self.record.len() as u64;
+        if actual != self.columns {
+            return ForeignError::RaggedLine { file, line, actual, expected: self.columns };
         }
         let text = self.record.get(column).map(text).unwrap_or_default();
         let wrong = ForeignError::NotANumber { file, line, column, text: brief(&text) };

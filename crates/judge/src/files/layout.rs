@@ -81,14 +81,14 @@ impl Layout {
             return of(&self.channels[channel]).map(|place| vec![place]);
         }
         let all = self.channels.len();
-        let found =
+        let actual =
             |count: usize| self.channels[..count].iter().map(of).collect::<Option<Vec<_>>>();
-        (all - self.derived..=all).rev().find_map(found).filter(|places| !places.is_empty())
+        (all - self.derived..=all).rev().find_map(actual).filter(|places| !places.is_empty())
     }
 
     /// Returns the error of rows with another number of columns than the case has channels.
-    pub(super) fn mismatch(&self, file: &str, found: usize) -> ForeignError {
+    pub(super) fn mismatch(&self, file: &str, actual: usize) -> ForeignError {
         let channels = self.channels.join(", ");
-        ForeignError::Channels { file: file.to_owned(), found, channels, wanted: self.widths() }
+        ForeignError::Channels { file: file.to_owned(), actual, channels, required: self.widths() }
     }
 }

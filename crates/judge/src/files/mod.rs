@@ -222,10 +222,10 @@ impl DrawSource {
 impl Source for DrawSource {
     type Error = ForeignError;
 
-    fn fill(&mut self, block: &mut Block, most: usize) -> Result<(), ForeignError> {
+    fn fill(&mut self, block: &mut Block, maximum: usize) -> Result<(), ForeignError> {
         match &mut self.source {
-            DrawReader::Csv(table) => table.read(&mut block.columns, &mut block.lookups, most),
-            DrawReader::Rows(rows) => rows.read(&mut block.columns, most),
+            DrawReader::Csv(table) => table.read(&mut block.columns, &mut block.lookups, maximum),
+            DrawReader::Rows(rows) => rows.read(&mut block.columns, maximum),
         }
     }
 }
@@ -242,8 +242,8 @@ pub enum ForeignError {
     #[error("{file}: no draws; write at least one number")]
     Empty { file: String },
     /// The file ends too early.
-    #[error("{file}: ends after {found} of {expected} draws; write it to the end")]
-    Truncated { file: String, found: u64, expected: u64 },
+    #[error("{file}: ends after {actual} of {expected} draws; write it to the end")]
+    Truncated { file: String, actual: u64, expected: u64 },
     /// The file continues behind its end.
     #[error("{file}: goes on after its {expected} draws; write one array a file")]
     Overlong { file: String, expected: u64 },
@@ -271,8 +271,8 @@ pub enum ForeignError {
     #[error("{file}: not an npy file ({cause}); write it by numpy.save")]
     NotNpy { file: String, cause: io::Error },
     /// The array holds something else than real numbers of 4 or 8 bytes.
-    #[error("{file}: an array of type {found}; save it as float64 or float32, by x.astype('<f8')")]
-    ElementType { file: String, found: String },
+    #[error("{file}: an array of type {actual}; save it as float64 or float32, by x.astype('<f8')")]
+    ElementType { file: String, actual: String },
     /// The array has several axes.
     #[error(
         "{file}: an array of shape {shape}, whose order of draws is not known; \
@@ -286,11 +286,11 @@ pub enum ForeignError {
     Transposed { file: String, shape: String },
     /// Number of values that differs from that of a draw of the case.
     #[error(
-        "{file}: a draw has {}, but the case has the channels {channels}; write draws of {wanted}, or choose one \
+        "{file}: a draw has {}, but the case has the channels {channels}; write draws of {required}, or choose one \
          of the channels by --channel",
-        counted(*found as u64, "value")
+        counted(*actual as u64, "value")
     )]
-    Channels { file: String, found: usize, channels: String, wanted: String },
+    Channels { file: String, actual: usize, channels: String, required: String },
     /// Numbers without a shape: the number of values of a draw is unknown.
     #[error(
         "{file}: numbers without a shape do not tell how many values a draw has, of the channels {channels} that the case \
@@ -329,9 +329,9 @@ pub enum ForeignError {
     /// A line with another number of columns than the first.
     #[error(
         "{file}, line {line}: {} where the first line has {expected}; mend the line",
-        counted(*found, "column")
+        counted(*actual, "column")
     )]
-    RaggedLine { file: String, line: u64, found: u64, expected: u64 },
+    RaggedLine { file: String, line: u64, actual: u64, expected: u64 },
     /// A line that does not end.
     #[error("{file}, line {line}: longer than {longest} bytes; write one draw a line")]
     LongLine { file: String, line: u64, longest: u64 },

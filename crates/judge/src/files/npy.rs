@@ -22,7 +22,7 @@ pub(super) fn open(
     let expected = array.count().ok_or_else(shape)?;
     let word = NumberType::float(&array.kind).ok_or_else(|| ForeignError::ElementType {
         file: file.to_owned(),
-        found: array.kind.clone(),
+        actual: array.kind.clone(),
     })?;
     let axes: Vec<u64> = array.shape.iter().copied().filter(|&size| size != 1).collect();
     let [draws, width] = match axes[..] {
@@ -42,11 +42,11 @@ pub(super) fn open(
     }
     let header = header.len() as u64;
     if let Some(length) = length {
-        let found = length.saturating_sub(header) / word.width() as u64;
+        let actual = length.saturating_sub(header) / word.width() as u64;
         let (file, row) = (file.to_owned(), width.max(1) as u64);
-        if found < expected {
-            let (found, expected) = (found / row, expected / row);
-            return Err(ForeignError::Truncated { file, found, expected });
+        if actual < expected {
+            let (actual, expected) = (actual / row, expected / row);
+            return Err(ForeignError::Truncated { file, actual, expected });
         }
         if Some(length - header) != expected.checked_mul(word.width() as u64) {
             return Err(ForeignError::Overlong { file, expected: expected / row });
@@ -194,7 +194,7 @@ mod tests {
         }
         for (values, shape) in [(2, "(4, 2)"), (1, "(4,)")] {
             let error = refused(doubles(shape, &vec![0.0; 4 * values]), &three);
-            assert!(matches!(error, ForeignError::Channels { found, .. } if found == values));
+            assert!(matches!(error, ForeignError::Channels { actual, .. } if actual == values));
         }
         let turned = refused(doubles("(3, 8)", &[0.0; 24]), &three);
         assert!(matches!(turned, ForeignError::Transposed { .. }));
@@ -207,13 +207,14 @@ mod tests {
             assert!(matches!(error, ForeignError::NotNpy { .. }), "{shape}");
         }
         let huge = refused(header("'<f8'", "(1000000000000,)"), &one);
-        assert!(matches!(huge, ForeignError::Truncated { found: 0, .. }));
+        assert!(matches!(huge, ForeignError::Truncated { actual: 0, .. }));
     }
 
     #[test]
     fn files_of_another_length_are_refused() {
         let whole = doubles("(5,)", &[0.5; 5]);
-        let is_cut = |error| matches!(error, ForeignError::Truncated { found: 3, expected: 5, .. });
+        let is_cut =
+            |error| matches!(error, ForeignError::Truncated { actual: 3, expected: 5, .. });
         let is_long = |error| matches!(error, ForeignError::Overlong { expected: 5, .. });
         let cut = whole[..whole.len() - 9].to_vec();
         assert!(is_cut(open(&cut).expect_err("cut")) && is_cut(refused(cut, &Layout::default())));

@@ -95,11 +95,12 @@ impl Words {
         let before = numbers.len();
         while numbers.len() < at_most {
             let left = self.announced.map_or(u64::MAX, |all| all - self.given);
-            let wanted = (at_most - numbers.len()).min(usize::try_from(left).unwrap_or(usize::MAX));
-            if wanted == 0 || (self.end - self.start < width && self.fill()? < width) {
+            let required =
+                (at_most - numbers.len()).min(usize::try_from(left).unwrap_or(usize::MAX));
+            if required == 0 || (self.end - self.start < width && self.fill()? < width) {
                 break;
             }
-            let count = wanted.min((self.end - self.start) / width);
+            let count = required.min((self.end - self.start) / width);
             let stop = self.start + count * width;
             self.word.convert(&self.chunk[self.start..stop], numbers);
             self.start = stop;
@@ -128,8 +129,8 @@ impl Words {
     fn partial_row(&self, numbers: u64, values: usize) -> ForeignError {
         match self.announced {
             Some(announced) => {
-                let (found, expected) = (numbers / values as u64, announced / values as u64);
-                ForeignError::Truncated { file: self.file.clone(), found, expected }
+                let (actual, expected) = (numbers / values as u64, announced / values as u64);
+                ForeignError::Truncated { file: self.file.clone(), actual, expected }
             }
             None => ForeignError::PartialRow { file: self.file.clone(), numbers, values },
         }
@@ -141,8 +142,8 @@ impl Words {
         let file = || self.file.clone();
         match self.announced {
             Some(announced) if self.given < announced => {
-                let (found, expected) = (self.given / self.width, announced / self.width);
-                Err(ForeignError::Truncated { file: file(), found, expected })
+                let (actual, expected) = (self.given / self.width, announced / self.width);
+                Err(ForeignError::Truncated { file: file(), actual, expected })
             }
             Some(announced) if rest > 0 => {
                 let expected = announced / self.width;

@@ -22,13 +22,13 @@ impl Level {
         match self {
             Self::All(value) => Ok(vec![*value; size.values()]),
             Self::Each(picture) => {
-                let found = picture.size;
-                if found == size {
+                let actual = picture.size;
+                if actual == size {
                     return Ok(picture.values.clone());
                 }
-                if found != (Size { channels: 1, ..size }) {
+                if actual != (Size { channels: 1, ..size }) {
                     let (file, other) = (format!("the picture of the {what}"), "a pass".to_owned());
-                    return Err(ImageError::Differ { file, found, other, expected: size });
+                    return Err(ImageError::Differ { file, actual, other, expected: size });
                 }
                 let pixels = picture.values.iter();
                 Ok(pixels.flat_map(|&x| std::iter::repeat_n(x, size.channels)).collect())
@@ -109,18 +109,18 @@ impl Pixels {
         let size = stack.size;
         if !(claim.rounding >= 0.0 && claim.rounding.is_finite()) {
             let (what, value) = ("rounding", claim.rounding);
-            return Err(ImageError::Number { what, value, wanted: "a finite number, 0 or more" });
+            return Err(ImageError::Number { what, value, required: "a finite number, 0 or more" });
         }
         let truth = claim.truth.spread("truth", size)?;
         let is_inside = |x: f64| match claim.range {
             Some([low, high]) => x.is_finite() && low <= x && x <= high,
             None => x.is_finite(),
         };
-        let wanted = match claim.range {
+        let required = match claim.range {
             Some([low, high]) => format!("a number from {low} to {high}"),
             None => "a finite number".to_owned(),
         };
-        check("truth", size, &truth, &is_inside, &wanted)?;
+        check("truth", size, &truth, &is_inside, &required)?;
         check_numbers(claim)?;
         let (variance, estimate) = if let Some((variance, estimate)) = Estimated::of(claim, size)? {
             (Some(variance), Some(estimate))
@@ -146,13 +146,13 @@ impl Pixels {
         let rounding = claim.rounding.max(stack.rounding).max(claim.truth.rounding());
         let truth_share = claim.truth_passes.map_or(0.0, |passes| 1.0 / passes as f64);
         let (range, kurtosis) = (claim.range, claim.kurtosis);
-        let found =
+        let actual =
             Self { truth, variance, estimate, truth_share, kurtosis, range, rounding, units };
-        let of = |i: usize| found.floor(i) / found.units[i % size.channels];
+        let of = |i: usize| actual.floor(i) / actual.units[i % size.channels];
         let floor = (0..size.values()).map(of).fold(0.0, f64::max);
         match tolerance.filter(|&tolerance| tolerance < 4.0 * floor) {
             Some(tolerance) => Err(ImageError::Unresolved { tolerance, floor }),
-            None => Ok(found),
+            None => Ok(actual),
         }
     }
 
@@ -177,7 +177,7 @@ impl Pixels {
 
     /// Returns whether a value is judged: not if the estimate of its variance is no number.
     pub(super) fn is_known(&self, index: usize) -> bool {
-        self.estimate.as_ref().is_none_or(|found| !found.is_unknown[index])
+        self.estimate.as_ref().is_none_or(|actual| !actual.is_unknown[index])
     }
 
     /// Returns whether a variance that was estimated is 0 everywhere.
@@ -209,9 +209,9 @@ impl Pixels {
     /// Returns the range of x − T for these T, in units of `unit`.
     pub(super) fn range_about(&self, truths: &[f64], unit: f64) -> Option<[f64; 2]> {
         let [low, high] = self.widened()?;
-        let least = truths.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = truths.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Some([low - most, high - least].map(|end| end / unit))
+        let minimum = truths.iter().copied().fold(f64::INFINITY, f64::min);
+        let maximum = truths.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Some([low - maximum, high - minimum].map(|end| end / unit))
     }
 
     /// Returns the range of x − T for any T in the range, in units of `unit`.
@@ -226,7 +226,7 @@ const EXACT: &str = "a finite number, 0 or more (if the variance was estimated f
 
 /// Validates the numbers of passes and the kurtosis.
 fn check_numbers(claim: &Claim) -> Result<(), ImageError> {
-    let number = |what, value, wanted| Err(ImageError::Number { what, value, wanted });
+    let number = |what, value, required| Err(ImageError::Number { what, value, required });
     let few = |passes: Option<usize>| passes.filter(|&passes| passes < 2);
     if let Some(passes) = few(claim.variance_passes) {
         return number("variance-passes", passes as f64, "a number of passes, 2 or more");
@@ -247,11 +247,11 @@ pub(super) fn check(
     size: Size,
     values: &[f64],
     is_fine: &dyn Fn(f64) -> bool,
-    wanted: &str,
+    required: &str,
 ) -> Result<(), ImageError> {
     let Some(index) = values.iter().position(|&x| !is_fine(x)) else { return Ok(()) };
     let ([row, column, channel], value) = (size.place(index), values[index]);
-    Err(ImageError::Pixel { what, row, column, channel, value, wanted: wanted.to_owned() })
+    Err(ImageError::Pixel { what, row, column, channel, value, required: required.to_owned() })
 }
 
 /// Reason why pictures could not be read or judged.
@@ -269,18 +269,18 @@ pub enum ImageError {
     #[error("{file}: not {what} that can be read ({cause}); {cure}")]
     Faulty { file: String, what: &'static str, cause: String, cure: &'static str },
     /// The shape of an array is not that of a picture.
-    #[error("{file}: an array of shape {shape}; save {wanted}")]
-    Shape { file: String, shape: String, wanted: &'static str },
+    #[error("{file}: an array of shape {shape}; save {required}")]
+    Shape { file: String, shape: String, required: &'static str },
     /// Pictures of different sizes.
-    #[error("{file}: {found}, but {other} has {expected}; give pictures of one size")]
-    Differ { file: String, found: Size, other: String, expected: Size },
+    #[error("{file}: {actual}, but {other} has {expected}; give pictures of one size")]
+    Differ { file: String, actual: Size, other: String, expected: Size },
     /// Values that do not fill the picture.
     #[error(
         "{} for {} of {expected}; give one for each, and at least one",
-        counted(*found as u64, "value"),
+        counted(*actual as u64, "value"),
         if *passes == 1 { "1 pass".to_owned() } else { format!("{passes} passes") }
     )]
-    Count { expected: Size, passes: usize, found: usize },
+    Count { expected: Size, passes: usize, actual: usize },
     /// One pass alone.
     #[error(
         "there is one pass; give two or more: an array of shape (passes, height, width[, channels]), \
@@ -289,7 +289,7 @@ pub enum ImageError {
     OnePass,
     /// A pixel of a claim has an impossible value.
     #[error(
-        "the {what} of row {row}, column {column}, channel {channel} is {value}, not {wanted}; mend it"
+        "the {what} of row {row}, column {column}, channel {channel} is {value}, not {required}; mend it"
     )]
     Pixel {
         what: &'static str,
@@ -297,11 +297,11 @@ pub enum ImageError {
         column: usize,
         channel: usize,
         value: f64,
-        wanted: String,
+        required: String,
     },
     /// A number has an impossible value.
-    #[error("{what} = {value} is not {wanted}; give {what} as {wanted}")]
-    Number { what: &'static str, value: f64, wanted: &'static str },
+    #[error("{what} = {value} is not {required}; give {what} as {required}")]
+    Number { what: &'static str, value: f64, required: &'static str },
     /// A tolerance is smaller than rounding.
     #[error(
         "a tolerance of {tolerance:e} is below 4 times what rounding may add to a pixel, {floor:.1e} of the \

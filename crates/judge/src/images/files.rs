@@ -94,7 +94,7 @@ pub fn stack_in(paths: &[impl AsRef<Path>], frame: Frame) -> Result<Stack, Image
         if other.size != size {
             return Err(ImageError::Differ {
                 file: path.as_ref().display().to_string(),
-                found: other.size,
+                actual: other.size,
                 other: first.display().to_string(),
                 expected: size,
             });
@@ -173,7 +173,7 @@ impl Array {
         path: &Path,
         file: &str,
         reading: Reading,
-        wanted: &'static str,
+        required: &'static str,
     ) -> Result<Self, ImageError> {
         let unreadable = |cause| ImageError::Unreadable { file: file.to_owned(), cause };
         let faulty = |cause: String, cure| ImageError::Faulty {
@@ -190,7 +190,7 @@ impl Array {
             faulty(format!("its numbers are {}", array.kind), "save it as float64 or float32")
         })?;
         let shape =
-            || ImageError::Shape { file: file.to_owned(), shape: array.written_shape(), wanted };
+            || ImageError::Shape { file: file.to_owned(), shape: array.written_shape(), required };
         let (passes, size) = lengths(&array).and_then(|axes| reading(&axes)).ok_or_else(shape)?;
         let is_turned =
             array.fortran_order && array.shape.iter().filter(|&&axis| axis > 1).count() > 1;
@@ -201,13 +201,13 @@ impl Array {
         let count = array.count().filter(|&count| count > 0).ok_or_else(shape)?;
         let mut bytes = Vec::new();
         source.read_to_end(&mut bytes).map_err(unreadable)?;
-        let (found, width) = (bytes.len(), word.width());
-        if Some(found as u64) != count.checked_mul(width as u64) {
+        let (actual, width) = (bytes.len(), word.width());
+        if Some(actual as u64) != count.checked_mul(width as u64) {
             let cause =
-                format!("{found} bytes follow the header, not {count} numbers of {width} bytes");
+                format!("{actual} bytes follow the header, not {count} numbers of {width} bytes");
             return Err(faulty(cause, "write one array to its end"));
         }
-        let mut values = Vec::with_capacity(found / width);
+        let mut values = Vec::with_capacity(actual / width);
         word.convert(&bytes, &mut values);
         let rounding = if width == 4 { SINGLE } else { 0.0 };
         Ok(Self { passes, size, values, rounding })

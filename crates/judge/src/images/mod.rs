@@ -89,7 +89,7 @@ impl Default for ImageOptions {
 
 impl ImageOptions {
     fn check(&self) -> Result<(), ImageError> {
-        let number = |what, value, wanted| Err(ImageError::Number { what, value, wanted });
+        let number = |what, value, required| Err(ImageError::Number { what, value, required });
         match *self {
             Self { tolerance: Some(x), .. } if !(x > 0.0 && x.is_finite()) => {
                 number("tolerance", x, "a finite number above 0")
@@ -118,11 +118,15 @@ impl ImageOptions {
 /// # Errors
 ///
 /// The claim or the options make no sense, or the claim has another size than the passes.
-pub fn judge(stack: &Stack, claim: &Claim, wanted: &ImageOptions) -> Result<Judgement, ImageError> {
-    wanted.check()?;
-    let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
-    let (size, alpha) = (stack.size, wanted.alpha);
-    let mut judgement = Judgement::new(stack, alpha, wanted.tile(size, stack.passes, VALUES));
+pub fn judge(
+    stack: &Stack,
+    claim: &Claim,
+    required: &ImageOptions,
+) -> Result<Judgement, ImageError> {
+    required.check()?;
+    let pixels = Pixels::new(claim, stack, required.tolerance)?;
+    let (size, alpha) = (stack.size, required.alpha);
+    let mut judgement = Judgement::new(stack, alpha, required.tile(size, stack.passes, VALUES));
     judgement.truth_passes = claim.truth_passes;
     let range = pixels.widened().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let bound = |i| if pixels.is_certain(i) { pixels.bound(i) } else { f64::MAX };
@@ -140,14 +144,14 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &ImageOptions) -> Result<Judg
     }
     let (is_free, is_whole) = (!judgement.neighbours.is_refuted(), judgement.refuting == 0);
     let stacks: Vec<&Stack> = match &pixels.estimate {
-        Some(found) => found.stack.iter().chain([stack]).collect(),
+        Some(actual) => actual.stack.iter().chain([stack]).collect(),
         None => Vec::new(),
     };
     let mut share = 1.0;
-    if let Some(found) = &pixels.estimate {
-        judgement.tile = wanted.tile(size, stack.passes.min(found.passes), NOISY_VALUES);
-        if wanted.tile.is_none() && claim.kurtosis.is_none() && is_whole {
-            let chosen = tails::chosen(&stacks, size, judgement.tile, found.passes);
+    if let Some(actual) = &pixels.estimate {
+        judgement.tile = required.tile(size, stack.passes.min(actual.passes), NOISY_VALUES);
+        if required.tile.is_none() && claim.kurtosis.is_none() && is_whole {
+            let chosen = tails::chosen(&stacks, size, judgement.tile, actual.passes);
             (judgement.tile, share) = (chosen.tile, chosen.share);
         }
     }
@@ -161,14 +165,14 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &ImageOptions) -> Result<Judg
     let tiles_alpha = share * main_share(2) * alpha;
     let (q_tiles, q_whole) = (q(&parts), q(&wholes));
     judgement.estimate =
-        pixels.estimate.as_ref().map(|found| found.told(claim, size, tile, &parts, &q_tiles));
+        pixels.estimate.as_ref().map(|actual| actual.told(claim, size, tile, &parts, &q_tiles));
     if is_whole {
         let q = q_whole.iter().copied().fold(0.0, f64::max);
         judgement.variance = variance_of(stack, &pixels, q, is_free, alpha);
         let terms = Terms {
             is_free,
             has_variance: !judgement.variance.is_some_and(|variance| variance.is_refuted),
-            tolerance: wanted.tolerance,
+            tolerance: required.tolerance,
             is_capped: false,
             count: parts.len(),
             levels: Levels::new(tiles_alpha, parts.len()),
@@ -259,18 +263,18 @@ fn limit(alpha: f64) -> f64 {
 }
 
 fn neighbours_of(stack: &Stack, alpha: f64) -> Dependence {
-    let (found, limit) = (order::neighbours(stack), limit(alpha));
+    let (actual, limit) = (order::neighbours(stack), limit(alpha));
     let mut said = Dependence {
-        evidence: found.ln_e,
+        evidence: actual.ln_e,
         limit,
-        correlation: Some(found.correlation),
+        correlation: Some(actual.correlation),
         is_tested: stack.size.pixels() > 1,
         ..Dependence::default()
     };
-    if found.ln_e >= limit {
+    if actual.ln_e >= limit {
         said.reason = format!(
             "the pixels of a pass are not independent: the correlation of neighbours is {:.2}",
-            found.correlation
+            actual.correlation
         );
     }
     said
@@ -281,25 +285,25 @@ fn order_of(stack: &Stack, is_certain: bool, alpha: f64) -> (Dependence, Vec<u32
     let limit = limit(alpha);
     let is_tested = stack.passes >= order::fewest((-limit).exp());
     let mut said = Dependence { limit, is_tested, ..Dependence::default() };
-    if let Some(found) = order::order(stack) {
-        said.evidence = -found.p.ln();
-        (said.lag, said.correlation) = (Some(found.lag), Some(found.correlation));
+    if let Some(actual) = order::order(stack) {
+        said.evidence = -actual.p.ln();
+        (said.lag, said.correlation) = (Some(actual.lag), Some(actual.correlation));
         if said.evidence >= limit {
             said.reason = format!(
                 "the passes are not independent: the correlation of passes that are {} apart is {:.2}",
-                found.lag, found.correlation
+                actual.lag, actual.correlation
             );
         }
     }
     let mut repeated = Vec::new();
-    if let Some(found) = repeats::repeat(stack).filter(|found| found.ln_p <= -limit) {
-        let names: Vec<String> = found.passes.iter().map(u32::to_string).collect();
+    if let Some(actual) = repeats::repeat(stack).filter(|actual| actual.ln_p <= -limit) {
+        let names: Vec<String> = actual.passes.iter().map(u32::to_string).collect();
         said.reason = format!(
             "the passes are not independent: passes {} share values, counted from 0; give each pass \
              and thread a seed of its own",
             names.join(", ")
         );
-        repeated = found.passes;
+        repeated = actual.passes;
     }
     if !is_certain && repeats::is_one_image(stack) {
         "all passes are one image: give each pass a seed of its own".clone_into(&mut said.reason);
@@ -317,12 +321,12 @@ fn variance_of(
     alpha: f64,
 ) -> Option<Variance> {
     let level = SIDE_SHARE * alpha;
-    let (found, excess, error) = if is_noisy(pixels) {
+    let (actual, excess, error) = if is_noisy(pixels) {
         variance::pairs(stack, pixels, q, is_free, level)?
     } else {
         (variance::squares(stack, pixels, is_free)?, 1.0, 0.0)
     };
-    let variance::Squares { ln_e, about_truth, about_mean } = found;
+    let variance::Squares { ln_e, about_truth, about_mean } = actual;
     let (margin, limit) = (VARIANCE_MARGIN * excess, -level.ln());
     let is_refuted = ln_e >= limit && is_by_spread(about_truth, about_mean);
     let is_too_large = is_free && shown::is_too_large(stack, pixels, about_mean, error);

@@ -34,13 +34,13 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
     let variance = pixels.variance.as_ref().map(|variance| mean_at(&places, |i| variance[i]));
     let share = 1.0 / n + pixels.truth_share;
     let standard_error = variance.map_or(f64::NAN, |v| (v * share / count).sqrt());
-    let mut found = Tile::new(part, [truth, mean, standard_error]);
+    let mut finding = Tile::new(part, [truth, mean, standard_error]);
     let is_free = terms.is_free || places.len() == 1;
     if places.is_empty() {
-        return found;
+        return finding;
     }
     if places.iter().all(|&i| pixels.is_certain(i)) {
-        return found.without_doubt(0.0);
+        return finding.without_doubt(0.0);
     }
     let floor = mean_at(&places, |i| pixels.floor(i)) / unit;
     let is_exact = pixels.truth_share == 0.0;
@@ -58,7 +58,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
     if let Some(variance) = variance.filter(|_| terms.has_variance && is_free) {
         let scale = if is_exact { 1.0 } else { share } / (unit * unit);
         let estimate = match &pixels.estimate {
-            Some(found) => variance::of_tile(variance * scale, q, found.passes, count),
+            Some(finding) => variance::of_tile(variance * scale, q, finding.passes, count),
             None => Estimate { variance: variance * scale, error: 0.0 },
         };
         if variance > 0.0 {
@@ -70,14 +70,14 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
             if let Some(upper) = estimate.upper(MISS) {
                 let error = (upper * ((share / count) / (unit * unit) / scale)).sqrt();
                 let z = upper_quantile(MISS) + upper_quantile(0.025 / terms.count.max(1) as f64);
-                found.promise(terms.tolerance, terms.is_capped, z, [error, unit], upper_tail);
-                found.plan_by_error(stack.passes, [1.0 / n, pixels.truth_share], z * error);
+                finding.promise(terms.tolerance, terms.is_capped, z, [error, unit], upper_tail);
+                finding.plan_by_error(stack.passes, [1.0 / n, pixels.truth_share], z * error);
             }
         } else {
             let y = all();
             let slack = slack(floor);
             if y.iter().all(|y| y.abs() <= slack) {
-                found = found.without_doubt(slack);
+                finding = finding.without_doubt(slack);
             }
             // Rare bright values that were not drawn make a tile too dark, but not too bright.
             let is_flat = y.iter().all(|x| *x > slack && (x - y[0]).abs() <= slack);
@@ -96,13 +96,13 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
         let of_block = |first: usize, last: usize, to: &mut Vec<f64>| to.extend(&y[first..last]);
         let bets = Scalar::of_all(mean, Some(planned), AT_THE_END, y.len(), of_block);
         ln_e.push(bets.evidence.ln_e);
-        if let (None, Some(design)) = (found.tolerance, bets.design) {
-            (found.tolerance, found.ln_p) = (Some(design.tolerance), bets.evidence.ln_pass);
-            found.plan(stack.passes, [1.0 / n, pixels.truth_share], planned / design.draws());
+        if let (None, Some(design)) = (finding.tolerance, bets.design) {
+            (finding.tolerance, finding.ln_p) = (Some(design.tolerance), bets.evidence.ln_pass);
+            finding.plan(stack.passes, [1.0 / n, pixels.truth_share], planned / design.draws());
         }
     }
-    found.ln_e = if ln_e.is_empty() { 0.0 } else { ln_mean_exp(&ln_e) };
-    found
+    finding.ln_e = if ln_e.is_empty() { 0.0 } else { ln_mean_exp(&ln_e) };
+    finding
 }
 
 /// Returns the largest |y| that counts as 0 if no value varied.

@@ -63,24 +63,24 @@ pub(super) fn order(stack: &Stack) -> Option<Order> {
     }
     let apart = (gram.iter().sum::<f64>() - diagonal) / (n * (n - 1)) as f64;
     let statistic = |order: &[usize]| {
-        let mut most = (0.0, 1, 0.0);
+        let mut maximum = (0.0, 1, 0.0);
         for lag in 1..=LAGS.min(n - 1) {
             let pairs = order.iter().zip(&order[lag..]);
             let sum: f64 = pairs.map(|(p, q)| gram[p * n + q]).sum();
             let excess = sum / (n - lag) as f64 - apart;
             let scaled = excess.abs() * ((n - lag) as f64).sqrt();
-            if scaled > most.0 {
-                most = (scaled, lag, excess);
+            if scaled > maximum.0 {
+                maximum = (scaled, lag, excess);
             }
         }
-        most
+        maximum
     };
     let mut order: Vec<usize> = (0..n).collect();
-    let (found, lag, excess) = statistic(&order);
+    let (finding, lag, excess) = statistic(&order);
     let mut rng = Address { seed: 1, experiment: 0, block: 0, lane: 0 }.stream();
     let (mut drawn, mut above) = (0, 0);
     // Reversed orders add up in another order, with other rounding.
-    let limit = found * (1.0 - 1e-9);
+    let limit = finding * (1.0 - 1e-9);
     while drawn < ORDERS && above < ENOUGH {
         for last in (1..n).rev() {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // up to `last`
@@ -213,16 +213,16 @@ mod tests {
             let small = small.count();
             assert!((3..=37).contains(&small), "{small}");
         }
-        let found = order(&stack(1, 24, 0.8, false)).expect("it varies");
-        assert!(found.p < 1e-4 && found.lag == 1, "{found:?}");
-        assert!((0.3..0.9).contains(&found.correlation), "{found:?}");
+        let finding = order(&stack(1, 24, 0.8, false)).expect("it varies");
+        assert!(finding.p < 1e-4 && finding.lag == 1, "{finding:?}");
+        assert!((0.3..0.9).contains(&finding.correlation), "{finding:?}");
     }
 
     #[test]
     fn eight_passes_have_enough_orders() {
         assert_eq!(fewest(3.3e-4), 8);
         assert_eq!(fewest(1.0), 2);
-        assert_eq!(order(&stack(1, 2, 0.0, false)).map(|found| found.p), Some(1.0));
+        assert_eq!(order(&stack(1, 2, 0.0, false)).map(|finding| finding.p), Some(1.0));
     }
 
     #[test]
@@ -252,7 +252,7 @@ mod tests {
         for seed in 0..200 {
             assert!(neighbours(&blended(seed, 0.0)).ln_e < 7.6, "seed {seed}");
         }
-        let found = neighbours(&blended(1, 0.3));
-        assert!(found.ln_e > 20.0 && (0.15..0.4).contains(&found.correlation), "{found:?}");
+        let finding = neighbours(&blended(1, 0.3));
+        assert!(finding.ln_e > 20.0 && (0.15..0.4).contains(&finding.correlation), "{finding:?}");
     }
 }

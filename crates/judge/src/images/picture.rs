@@ -37,9 +37,9 @@ impl Size {
 /// Returns averages of blocks of `block` × `block` pixels, smaller ones at the right and at the foot.
 fn averages(size: Size, values: &[f64], block: usize) -> (Size, Vec<f64>) {
     let (rows, columns) = (size.rows.div_ceil(block), size.columns.div_ceil(block));
-    let found = Size { rows, columns, channels: size.channels };
+    let actual = Size { rows, columns, channels: size.channels };
     let span = |first: usize, length: usize| first * block..((first + 1) * block).min(length);
-    let mut averages = Vec::with_capacity(found.values());
+    let mut averages = Vec::with_capacity(actual.values());
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
         let (down, across) = (span(row, size.rows), span(column, size.columns));
         let count = (down.len() * across.len()) as f64;
@@ -55,7 +55,7 @@ fn averages(size: Size, values: &[f64], block: usize) -> (Size, Vec<f64>) {
             averages.push(sum / count);
         }
     }
-    (found, averages)
+    (actual, averages)
 }
 
 impl std::fmt::Display for Size {
@@ -83,8 +83,8 @@ impl Picture {
     /// There are no values, or their number is not that of the size.
     pub fn new(size: Size, values: Vec<f64>) -> Result<Self, ImageError> {
         if values.is_empty() || values.len() != size.values() {
-            let (expected, found) = (size, values.len());
-            return Err(ImageError::Count { expected, passes: 1, found });
+            let (expected, actual) = (size, values.len());
+            return Err(ImageError::Count { expected, passes: 1, actual });
         }
         Ok(Self { size, values, rounding: 0.0 })
     }
@@ -124,7 +124,7 @@ impl Stack {
     /// There are fewer than two passes or no values, or the number of values is not that of the size.
     pub fn new(passes: usize, size: Size, values: Vec<f64>) -> Result<Self, ImageError> {
         if values.is_empty() || Some(values.len()) != passes.checked_mul(size.values()) {
-            return Err(ImageError::Count { expected: size, passes, found: values.len() });
+            return Err(ImageError::Count { expected: size, passes, actual: values.len() });
         }
         if passes < 2 {
             return Err(ImageError::OnePass);
@@ -191,9 +191,9 @@ mod tests {
         let values: Vec<f64> = (0..24).map(f64::from).collect();
         let stack = Stack::new(2, size, values).expect("a stack");
         let block = NonZeroUsize::new(2).expect("two");
-        let found = stack.averaged(block);
-        assert_eq!(found.size(), Size { rows: 1, columns: 2, channels: 2 });
+        let actual = stack.averaged(block);
+        assert_eq!(actual.size(), Size { rows: 1, columns: 2, channels: 2 });
         // (0 + 2 + 6 + 8)/4, each channel one more; then the last column, (4 + 10)/2; the second pass has 12 more.
-        assert_eq!(found.values, [4.0, 5.0, 7.0, 8.0, 16.0, 17.0, 19.0, 20.0]);
+        assert_eq!(actual.values, [4.0, 5.0, 7.0, 8.0, 16.0, 17.0, 19.0, 20.0]);
     }
 }

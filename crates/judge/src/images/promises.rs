@@ -8,9 +8,9 @@ use numeric::digits::short;
 /// Returns the assumptions about a variance and a truth that are not exact.
 fn estimated(judgement: &Judgement) -> Vec<String> {
     let mut said = Vec::new();
-    if let Some(found) = judgement.estimate {
-        let (kurtosis, passes) = (short(found.kurtosis, 3), found.passes);
-        said.push(if found.is_given {
+    if let Some(finding) = judgement.estimate {
+        let (kurtosis, passes) = (short(finding.kurtosis, 3), finding.passes);
+        said.push(if finding.is_given {
             format!(
                 "the variance is an estimate of {passes} passes; its error is paid for: the levels hold if no tile has a \
                  kurtosis above {kurtosis}, as given"
@@ -22,8 +22,8 @@ fn estimated(judgement: &Judgement) -> Vec<String> {
                  them hold"
             )
         });
-        let (negative, unknown) = (found.negative, found.unknown);
-        if let Some([row, column, channel]) = found.first {
+        let (negative, unknown) = (finding.negative, finding.unknown);
+        if let Some([row, column, channel]) = finding.first {
             let place =
                 format!("row {row}, column {column}{}", verdict::channel(judgement, channel));
             said.push(format!(

@@ -52,12 +52,12 @@ pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
     // The two searches share the level.
     let (values, alike) = (by_values(stack), alike(stack));
     // If two passes of 0 and 1 are equal, all others share the other value in many pixels, without being equal.
-    let is_most = |found: &Repeat| 2 * found.passes.len() > stack.passes;
-    let is_sure = alike.as_ref().is_some_and(|found| found.ln_p < SURE);
-    let values = values.filter(|found| !(is_sure && is_most(found)));
-    let found = [values, alike].into_iter().flatten();
-    let found = found.map(|found| Repeat { ln_p: (found.ln_p + LN_2).min(0.0), ..found });
-    found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+    let is_most = |finding: &Repeat| 2 * finding.passes.len() > stack.passes;
+    let is_sure = alike.as_ref().is_some_and(|finding| finding.ln_p < SURE);
+    let values = values.filter(|finding| !(is_sure && is_most(finding)));
+    let finding = [values, alike].into_iter().flatten();
+    let finding = finding.map(|finding| Repeat { ln_p: (finding.ln_p + LN_2).min(0.0), ..finding });
+    finding.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
 /// Returns the least probable repetition of values that few passes share.
@@ -79,13 +79,13 @@ fn by_values(stack: &Stack) -> Option<Repeat> {
     for (passes, count) in &places {
         *all.entry(passes.len()).or_default() += count;
     }
-    let found = places.into_iter().map(|(passes, count)| {
+    let finding = places.into_iter().map(|(passes, count)| {
         let (t, c) = (all[&passes.len()] as f64, count as f64);
         let ways = ln_choose(t, c) - (c - 1.0) * ln_choose(n as f64, passes.len() as f64);
         let ln_p = (ways + (n as f64 - 2.0).ln()).min(0.0);
         Repeat { passes, ln_p }
     });
-    found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+    finding.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
 /// Number of parts of a pass: two passes are compared only if one part is equal in both.
@@ -128,8 +128,8 @@ fn alike(stack: &Stack) -> Option<Repeat> {
         }
         signs.ln_e()
     };
-    let found = pairs.into_iter().map(|((a, b), _)| (evidence(a, b), a, b));
-    let (ln_e, a, b) = found.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let finding = pairs.into_iter().map(|((a, b), _)| (evidence(a, b), a, b));
+    let (ln_e, a, b) = finding.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let is_same = |pass: usize| looked.iter().all(|&p| stack.grey(pass, p) == stack.grey(a, p));
     let named = (0_u32..).zip(0..n).filter(|&(_, pass)| pass == a || pass == b || is_same(pass));
     let passes = named.map(|(pass, _)| pass).collect();
@@ -199,7 +199,7 @@ pub(super) fn shared(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
 /// Returns two passes that are equal in every pixel.
 fn equal(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
     let pairs = (0..one.passes).flat_map(|p| (0..other.passes).map(move |q| [p, q]));
-    let found = pairs.clone().find(|&[p, q]| one.pass(p) == other.pass(q))?;
+    let finding = pairs.clone().find(|&[p, q]| one.pass(p) == other.pass(q))?;
     // Probability that independent passes agree: the share of equal pairs in each pixel.
     let all = (one.passes * other.passes) as f64;
     let pixels = one.size.values();
@@ -217,7 +217,7 @@ fn equal(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
         .sum();
     // Any pair of passes may be equal by coincidence. A pixel that never varies is equal in all passes.
     let is_constant = ln_p > LN_SHARED - all.ln();
-    (!is_constant).then_some(found)
+    (!is_constant).then_some(finding)
 }
 
 /// Returns two passes with many values that no other pass has.
@@ -225,13 +225,13 @@ fn rare_values(one: &Stack, other: &Stack) -> Option<[usize; 2]> {
     let pixels = one.size.pixels();
     let mut places: BTreeMap<[usize; 2], f64> = BTreeMap::new();
     for pixel in (0..pixels).step_by(pixels.div_ceil(PIXELS)) {
-        let mut found: BTreeMap<u64, [Vec<usize>; 2]> = BTreeMap::new();
+        let mut finding: BTreeMap<u64, [Vec<usize>; 2]> = BTreeMap::new();
         for (k, stack) in [one, other].into_iter().enumerate() {
             for pass in 0..stack.passes {
-                found.entry(stack.grey(pass, pixel).to_bits()).or_default()[k].push(pass);
+                finding.entry(stack.grey(pass, pixel).to_bits()).or_default()[k].push(pass);
             }
         }
-        for (bits, passes) in found {
+        for (bits, passes) in finding {
             if let ([p], [q], true) = (&*passes[0], &*passes[1], f64::from_bits(bits) != 0.0) {
                 *places.entry([*p, *q]).or_default() += 1.0;
             }
@@ -306,7 +306,7 @@ mod tests {
         for seed in 0..20 {
             for steps in [1.0, 2.0, 3.0, 30.0] {
                 let coarse = found(&passes(seed, 7, |u| (u * steps).ceil().min(steps) + 1.0));
-                assert!(coarse.is_none_or(|found| found.ln_p > -9.0), "{steps}");
+                assert!(coarse.is_none_or(|finding| finding.ln_p > -9.0), "{steps}");
             }
         }
     }

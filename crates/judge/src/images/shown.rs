@@ -24,9 +24,9 @@ const MIN_VALUES: f64 = 32.0;
 /// passes' own spread.
 pub(super) fn mean(stack: &Stack, pixels: &Pixels, whole: &[Tile], is_free: bool) -> Option<Tile> {
     let open = whole.iter().filter(|tile| tile.verdict == Verdict::Inconclusive);
-    let found = open.filter_map(|tile| plain(stack, pixels, tile, is_free));
+    let finding = open.filter_map(|tile| plain(stack, pixels, tile, is_free));
     let size = |tile: &Tile| tile.z.map_or(0.0, f64::abs);
-    found.max_by(|a, b| size(a).total_cmp(&size(b)))
+    finding.max_by(|a, b| size(a).total_cmp(&size(b)))
 }
 
 /// Returns the picture in a channel with its own standard error, if its bias is obvious.

@@ -21,10 +21,10 @@ pub(super) struct Chosen {
     pub share: f64,
 }
 
-/// Returns the smallest tiles from `least` on, for a variance of `passes` passes. `stacks` show the tails.
-pub(super) fn chosen(stacks: &[&Stack], size: Size, least: usize, passes: usize) -> Chosen {
+/// Returns the smallest tiles from `minimum` on, for a variance of `passes` passes. `stacks` show the tails.
+pub(super) fn chosen(stacks: &[&Stack], size: Size, minimum: usize, passes: usize) -> Chosen {
     let longest = size.rows.max(size.columns);
-    let sizes = std::iter::successors(Some(least), |size| Some((2 * size).min(longest)));
+    let sizes = std::iter::successors(Some(minimum), |size| Some((2 * size).min(longest)));
     let mut sizes: Vec<usize> = sizes.take(usize::BITS as usize).collect();
     sizes.dedup();
     let has_bounds = |tile: &usize| {
@@ -38,6 +38,6 @@ pub(super) fn chosen(stacks: &[&Stack], size: Size, least: usize, passes: usize)
     };
     let count = |tile: usize| tiles::parts(size, tile, true).len() as f64;
     let all: f64 = sizes.iter().map(|&tile| count(tile)).sum();
-    let tile = sizes.iter().copied().find(has_bounds).unwrap_or(least);
+    let tile = sizes.iter().copied().find(has_bounds).unwrap_or(minimum);
     Chosen { tile, share: count(tile) / all }
 }

@@ -134,14 +134,14 @@ impl Tile {
     /// Sets ε, by default `quantiles` standard errors, and P± by the tails of a distribution.
     pub(super) fn promise(
         &mut self,
-        asked: Option<f64>,
+        requested: Option<f64>,
         is_capped: bool,
         quantiles: f64,
         [error, unit]: [f64; 2],
         tail: impl Fn(f64) -> f64,
     ) {
         let cap = if is_capped { MEAN_CAP } else { f64::INFINITY };
-        let tolerance = asked.unwrap_or((quantiles * error).min(cap));
+        let tolerance = requested.unwrap_or((quantiles * error).min(cap));
         (self.tolerance, self.ln_p) = (Some(tolerance), self.sides(tolerance, [error, unit], tail));
     }
 
@@ -177,10 +177,10 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     let mean = averages.iter().sum::<f64>() / n;
     let shown = averages.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
     let standard_error = (variance.map_or(shown, |variance| variance / count) / n).sqrt();
-    let mut found = Tile::new(part, [truth, mean, standard_error]);
+    let mut finding = Tile::new(part, [truth, mean, standard_error]);
     if places.iter().all(|&i| pixels.is_certain(i)) {
         // Values without spread were compared with their truth one by one.
-        return found.without_doubt(0.0);
+        return finding.without_doubt(0.0);
     }
     let draws = if is_free { n * count } else { n };
     let known = variance.map(|variance| VarianceBound::Variance(variance / unit / unit));
@@ -204,17 +204,17 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     };
     let planned = Some(terms.planned(draws));
     let scalar = Scalar::of_all(mean_quantity, planned, levels, stack.passes, of_block);
-    (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
+    (finding.ln_e, finding.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
     if let Some(design) = scalar.design {
-        found.tolerance = Some(design.tolerance);
-        found.plan(stack.passes, [1.0, 0.0], terms.planned(draws) / design.draws());
+        finding.tolerance = Some(design.tolerance);
+        finding.plan(stack.passes, [1.0, 0.0], terms.planned(draws) / design.draws());
     }
-    if let (Some(tolerance), true, false) = (found.tolerance, variance.is_some(), is_single) {
+    if let (Some(tolerance), true, false) = (finding.tolerance, variance.is_some(), is_single) {
         // Catoni's function hardly detects a bias in one pixel of many; the plain mean does.
-        let sides = found.sides(tolerance, [standard_error / unit, unit], upper_tail);
-        found.ln_p = [0, 1].map(|side| found.ln_p[side].min(sides[side]));
+        let sides = finding.sides(tolerance, [standard_error / unit, unit], upper_tail);
+        finding.ln_p = [0, 1].map(|side| finding.ln_p[side].min(sides[side]));
     }
-    found
+    finding
 }
 
 /// Returns the tiles, the smallest first, row after row, each with all its channels. Larger tiles detect a bias that is

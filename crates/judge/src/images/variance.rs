@@ -54,7 +54,7 @@ impl Estimated {
                 if stack.size != size {
                     return Err(ImageError::Differ {
                         file: "the stack of the variance".to_owned(),
-                        found: stack.size,
+                        actual: stack.size,
                         other: "a pass".to_owned(),
                         expected: size,
                     });
@@ -279,7 +279,7 @@ pub(super) fn pairs(
     let groups: Vec<&[usize]> = judged.chunk_by(|i, j| pixel(i) == pixel(j)).collect();
     let draws = groups.len() as f64;
     let estimate = match &pixels.estimate {
-        Some(found) => of_tile(1.0, q, found.passes, draws),
+        Some(actual) => of_tile(1.0, q, actual.passes, draws),
         None => Estimate { variance: 1.0, error: 0.0 },
     };
     let excess = estimate.upper(0.5 * level)?;

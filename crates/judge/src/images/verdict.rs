@@ -121,11 +121,11 @@ fn means_off(judgement: &Judgement, worst: Option<&Tile>) -> Vec<String> {
         [] => Vec::new(),
         [whole] => vec![format!("the picture is off: {}", off(judgement, whole))],
         [first, ..] => {
-            let most = furthest(wholes.iter().copied()).unwrap_or(first);
+            let maximum = furthest(wholes.iter().copied()).unwrap_or(first);
             let (count, channels) = (wholes.len(), judgement.size.channels);
-            let most = off(judgement, most);
+            let maximum = off(judgement, maximum);
             vec![format!(
-                "the picture is off in {count} of {channels} channels; the furthest: {most}"
+                "the picture is off in {count} of {channels} channels; the furthest: {maximum}"
             )]
         }
     };
@@ -148,12 +148,12 @@ fn means_open(judgement: &Judgement, is_flat: bool) -> Vec<String> {
     let whole = wholes.first().map(|whole| {
         let more = more(judgement, &wholes);
         // Without it more passes are asked to exclude a smaller bias.
-        let asked = whole
+        let requested = whole
             .needed
             .and(whole.tolerance)
             .map(|tolerance| format!(" with --tolerance {}", short(tolerance, 3)));
-        let asked = asked.unwrap_or_default();
-        format!("the picture may be off {}; {more}{asked}", bias(whole))
+        let requested = requested.unwrap_or_default();
+        format!("the picture may be off {}; {more}{requested}", bias(whole))
     });
     let tile = tiles.first().map(|tile| {
         format!(
@@ -208,9 +208,9 @@ fn undecided(tiles: &[Tile]) -> Vec<&Tile> {
 /// Returns the advice to render as many passes as decide all of these tiles, where their number is known.
 fn more(judgement: &Judgement, undecided: &[&Tile]) -> String {
     let needed: Option<Vec<f64>> = undecided.iter().map(|tile| tile.needed).collect();
-    let most = needed.map(|needed| needed.into_iter().fold(0.0, f64::max));
-    most.map_or("render more passes".to_owned(), |most| {
-        let passes = if most < 1e6 { most.to_string() } else { enough(most) };
+    let maximum = needed.map(|needed| needed.into_iter().fold(0.0, f64::max));
+    maximum.map_or("render more passes".to_owned(), |maximum| {
+        let passes = if maximum < 1e6 { maximum.to_string() } else { enough(maximum) };
         format!("render {passes} passes in place of {}", judgement.passes)
     })
 }
@@ -225,9 +225,9 @@ fn excluded(judgement: &Judgement) -> Vec<String> {
     let (tile, whole) = (widest(&judgement.tiles), widest(&judgement.whole));
     let mut said = Vec::new();
     if tile.max(whole) > WIDE {
-        let place = judgement.tiles.iter().find(|found| found.tolerance == Some(tile));
-        let place =
-            place.map_or(String::new(), |found| format!(" ({})", self::place(judgement, found)));
+        let place = judgement.tiles.iter().find(|finding| finding.tolerance == Some(tile));
+        let place = place
+            .map_or(String::new(), |finding| format!(" ({})", self::place(judgement, finding)));
         said.push(format!(
             "but only a bias above {} of the picture's mean is excluded in every tile{place}, above {} in the whole; render \
              more passes or give a larger --tile to exclude a smaller bias",
@@ -235,7 +235,7 @@ fn excluded(judgement: &Judgement) -> Vec<String> {
             percent(whole)
         ));
     }
-    let unknown = judgement.estimate.map_or(0, |found| found.unknown);
+    let unknown = judgement.estimate.map_or(0, |finding| finding.unknown);
     if unknown > 0 {
         said.push(format!("{unknown} values without a variance are not judged"));
     }

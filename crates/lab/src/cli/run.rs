@@ -39,17 +39,17 @@ pub(super) fn stress(arguments: &Stress, console: &Console) -> anyhow::Result<u8
         let (parts, seed) = (PAGES.values.len() + 1, run.seed);
         output::print(&format!("stress: {parts} parts, {form}, seed {seed}\n"))?;
     }
-    let found = arguments.threads.install(|| Ok(stress::all(run, &|_| bar.inc(1))))?;
+    let computed = arguments.threads.install(|| Ok(stress::all(run, &|_| bar.inc(1))))?;
     bar.finish_and_clear();
-    let written = output::write(&page::artifacts(&found)?, &arguments.out);
+    let written = output::write(&page::artifacts(&computed)?, &arguments.out);
     if !console.quiet {
-        output::print(&page::table(&found, output::pen(console)))?;
+        output::print(&page::table(&computed, output::pen(console)))?;
     }
     written?;
     if !console.quiet {
         output::print(&output::report_in(&arguments.out.join("stress")))?;
     }
-    Ok(u8::from(!found.holds()))
+    Ok(u8::from(!computed.holds()))
 }
 
 /// Number of independent runs of the long calibration.
@@ -92,7 +92,7 @@ pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> any
             counted(many, "stream")
         ))?;
     }
-    let found = arguments.threads.install(|| {
+    let computed = arguments.threads.install(|| {
         let bar = output::progress("calibrating", "runs", runs, console);
         let calibration = calibration::calibrate(runs, &|n| bar.inc(n))?;
         bar.finish_and_clear();
@@ -104,13 +104,13 @@ pub(super) fn self_test(arguments: &SelfTestArguments, console: &Console) -> any
         Ok(SelfTest { calibration, streams, mutants, seconds: begin.elapsed().as_secs_f64() })
     })?;
     if let Some(out) = &arguments.out {
-        output::write(&self_test::artifacts(&found)?, out)?;
+        output::write(&self_test::artifacts(&computed)?, out)?;
     }
     if !console.quiet {
-        output::print(&self_test::table(&found, output::pen(console)))?;
+        output::print(&self_test::table(&computed, output::pen(console)))?;
         if let Some(out) = &arguments.out {
             output::print(&format!("tables: {}\n", out.join("self-test").display()))?;
         }
     }
-    Ok(u8::from(!found.holds()))
+    Ok(u8::from(!computed.holds()))
 }

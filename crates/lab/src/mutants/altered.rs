@@ -59,10 +59,10 @@ pub trait Change<W: Walk>: Copy {
         walk: &W,
         state: &mut W::State<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        walk.collide(state, route, met, random)
+        walk.collide(state, route, extinctions, random)
     }
 }
 
@@ -132,10 +132,10 @@ impl<W: Walk, C: Change<W>> Walk for Altered<W, C> {
         &self,
         state: &mut Self::State<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        self.change.collide(&self.walk, state, route, met, random)
+        self.change.collide(&self.walk, state, route, extinctions, random)
     }
 
     #[inline(always)]

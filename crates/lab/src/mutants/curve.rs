@@ -44,7 +44,7 @@ const LINES: &[MutantRow<(), Bug>] = &[
     ("curve-collision-too-early", "the first collision beyond a distance counts before it", PLAIN, CheckId::Mean, step(line::OF_LAST_COLLISION)),
     ("curve-shifted", "every value is that of the distance before, and the first is 1", PLAIN, CheckId::Mean, Bug { finish: shifted, ..NONE }),
     ("curve-control-whole", "T_c is that of the whole ray at every distance", CONTROL, CheckId::Mean, Bug { prepare: whole_control, ..NONE }),
-    ("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CONTROL, CheckId::Mean, Bug { prepare: |setup| setup.fields.control_curve.fill(1.0), ..step(Slip { found: Some(with_decay), ..RIGHT }) }),
+    ("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CONTROL, CheckId::Mean, Bug { prepare: |setup| setup.fields.control_curve.fill(1.0), ..step(Slip { computed: Some(with_decay), ..RIGHT }) }),
     ("curve-log2", "log2 for ln in the flight", CONTROL, CheckId::Lookups, step(line::LOG2)),
     ("curve-of-fresh-walks", "every distance has a walk of its own", PLAIN, CheckId::Covariance, Bug { is_fresh: true, ..NONE }),
 ];
@@ -81,9 +81,9 @@ fn whole_control(setup: &mut Setup<TransmittanceCurve>) {
 }
 
 /// σ_t with which the weight of a walk decays as the control does, collision by collision.
-fn with_decay(walk: &mut Notes, found: f64) -> f64 {
+fn with_decay(walk: &mut Notes, computed: f64) -> f64 {
     let decay = Lane::exp(-walk.control_depth(walk.from, walk.t));
     let control = walk.control.extinction(walk.t);
-    let kept = ((found - control) * walk.mean_free_path).one_minus() * decay;
+    let kept = ((computed - control) * walk.mean_free_path).one_minus() * decay;
     kept.one_minus() / walk.mean_free_path + control
 }

@@ -47,7 +47,7 @@ pub struct Slip {
     /// The distance at which σ_t is looked up.
     pub lookup: NumberChange,
     /// σ_t there.
-    pub found: NumberChange,
+    pub computed: NumberChange,
     /// σ_t with which the walk collides.
     pub used: NumberChange,
     /// The distance of the collision, in functions of the distance.
@@ -75,7 +75,7 @@ pub const RIGHT: Slip = Slip {
     number: None,
     collides_at_end: false,
     lookup: None,
-    found: None,
+    computed: None,
     used: None,
     place: None,
     ends: None,
@@ -189,10 +189,10 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> MutantDraw
                 notes.t = walk.distance(&state, &route).double();
                 let place = if notes.is_beyond { support.to } else { notes.t };
                 let place = L::of(notes.changed(slip.lookup, place));
-                let found = medium.extinction(place).double();
-                let found = notes.changed(slip.found, found);
-                let used = notes.changed(slip.used, found);
-                broken += (used - found).abs() * notes.mean_free_path;
+                let computed = medium.extinction(place).double();
+                let computed = notes.changed(slip.computed, computed);
+                let used = notes.changed(slip.used, computed);
+                broken += (used - computed).abs() * notes.mean_free_path;
                 extinction = L::of(used);
                 t = L::of(notes.changed(slip.place, notes.t));
                 if slip.score.is_some() {
@@ -202,7 +202,7 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> MutantDraw
                 break None;
             }
             let (extinctions, in_space) = (&[extinction][..], &[][..]);
-            let met = TentativeCollision {
+            let collided = TentativeCollision {
                 inside,
                 t,
                 mean_free_path,
@@ -212,7 +212,7 @@ impl<W: Walk, P: Estimated<Fields = ControlledLine, Value: Channels>> MutantDraw
                 number,
             };
             let before = state;
-            let goes_on = walk.collide(&mut state, &mut route, &met, random);
+            let goes_on = walk.collide(&mut state, &mut route, &collided, random);
             if W::IS_FIXED && !goes_on {
                 state = before;
             }
@@ -302,16 +302,18 @@ pub const AT_MIDPOINT: Slip = Slip { lookup: Some(|walk, t| (walk.from + t) * 0.
 pub const REVERSED: Slip =
     Slip { lookup: Some(|walk, t| -t + (walk.support.from + walk.support.to)), ..RIGHT };
 /// σ_t of a channel that is thinner by a fifth.
-pub const OF_ANOTHER_CHANNEL: Slip = Slip { found: Some(|_, found| found * 0.8), ..RIGHT };
+pub const OF_ANOTHER_CHANNEL: Slip = Slip { computed: Some(|_, computed| computed * 0.8), ..RIGHT };
 /// No effect of the first collision.
-pub const FIRST_SKIPPED: Slip =
-    Slip { used: Some(|walk, found| if walk.collisions == 0 { 0.0 } else { found }), ..RIGHT };
+pub const FIRST_SKIPPED: Slip = Slip {
+    used: Some(|walk, computed| if walk.collisions == 0 { 0.0 } else { computed }),
+    ..RIGHT
+};
 /// Functions of the distance of a collision take the distance of the collision before it.
 pub const OF_LAST_COLLISION: Slip = Slip { place: Some(|walk, _| walk.from), ..RIGHT };
 /// A lookup, without effect, after the flight that leaves the medium.
 pub const LATE_END: Slip = Slip {
     collides_at_end: true,
-    found: Some(|walk, found| if walk.is_beyond { 0.0 } else { found }),
+    computed: Some(|walk, computed| if walk.is_beyond { 0.0 } else { computed }),
     ..RIGHT
 };
 /// Decisions by the number of the flight.

@@ -114,7 +114,7 @@ impl Change<ToEmitter<'_>> for Wrong<'_> {
         let inside = walk.fly(path, route, depth);
         if self.bug == Bug::LastSegment {
             // What is left is the last segment's.
-            path.shadow.found.scale_where(path.shadow.casts & inside, (-depth).exp());
+            path.shadow.lit.scale_where(path.shadow.casts & inside, (-depth).exp());
         }
         inside
     }
@@ -124,12 +124,13 @@ impl Change<ToEmitter<'_>> for Wrong<'_> {
         walk: &ToEmitter,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (bug, before, here, mut met) = (self.bug, *path, route.here, *met);
-        let (one, casts, albedo) = (met.t.each(1.0), before.shadow.casts, walk.rod.albedo(met.t));
-        let hits = !casts & !met.inside & before.is_forward;
+        let (bug, before, here, mut extinctions) = (self.bug, *path, route.here, *extinctions);
+        let (one, casts, albedo) =
+            (extinctions.t.each(1.0), before.shadow.casts, walk.rod.albedo(extinctions.t));
+        let hits = !casts & !extinctions.inside & before.is_forward;
         match bug {
             Bug::HitAlone => path.unscattered |= hits,
             Bug::UnscatteredWeighted => {
@@ -137,24 +138,25 @@ impl Change<ToEmitter<'_>> for Wrong<'_> {
                 path.unscattered &= !hits;
             }
             Bug::ThroughScattering => {
-                met.extinction = met.extinction * L::select(casts, albedo.one_minus(), one);
+                extinctions.extinction =
+                    extinctions.extinction * L::select(casts, albedo.one_minus(), one);
             }
             _ => {}
         }
         path.score = one.each(0.0);
-        let goes_on = walk.collide(path, route, &met, random);
+        let goes_on = walk.collide(path, route, &extinctions, random);
         let begins = path.shadow.casts & !casts;
         let shadow = &mut path.shadow;
-        let (density, found) = (before.shadow.density, before.shadow.found);
-        let arrives = casts & !met.inside;
+        let (density, lit) = (before.shadow.density, before.shadow.lit);
+        let arrives = casts & !extinctions.inside;
         match bug {
             Bug::Averaged => path.score.scale_where(arrives | !before.unscattered, one * 0.5),
             Bug::Squared => {
                 path.score.scale_where(hits, path.score);
                 path.score.set_where(arrives, path.score / (density + 1.0));
             }
-            Bug::NullsInOne => path.score.set_where(arrives, density * found / (density + 1.0)),
-            Bug::ShadowTwice => path.score.scale_where(arrives, found),
+            Bug::NullsInOne => path.score.set_where(arrives, density * lit / (density + 1.0)),
+            Bug::ShadowTwice => path.score.scale_where(arrives, lit),
             Bug::NullsMissing => path.ratio.set_where(!casts & !begins, before.ratio),
             Bug::NotReset => path.ratio.scale_where(begins, before.ratio),
             Bug::AlbedoTwice => shadow.density.scale_where(begins, albedo),
@@ -164,7 +166,7 @@ impl Change<ToEmitter<'_>> for Wrong<'_> {
                 path.ratio.set_where(begins, path.ratio.one_minus());
             }
             Bug::LastSegment => {
-                shadow.found.set_where(begins, flight_to_end(self.setup, met.t).exp());
+                shadow.lit.set_where(begins, flight_to_end(self.setup, extinctions.t).exp());
             }
             Bug::CarriedAlong => route.here.copy_where(casts & !shadow.casts, &here),
             Bug::None | Bug::HitAlone | Bug::UnscatteredWeighted | Bug::ThroughScattering => {}

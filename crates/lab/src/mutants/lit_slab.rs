@@ -88,7 +88,7 @@ impl Change<ToLight<'_>> for Wrong<'_> {
         let inside = walk.fly(path, route, depth);
         if self.bug == Bug::LastSegment {
             // What is left is the last segment's.
-            path.shadow.found.scale_where(path.shadow.casts & inside, (-depth).exp());
+            path.shadow.lit.scale_where(path.shadow.casts & inside, (-depth).exp());
         }
         inside
     }
@@ -98,23 +98,23 @@ impl Change<ToLight<'_>> for Wrong<'_> {
         walk: &ToLight,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (before, one, phase) = (*path, met.t.each(1.0), &walk.slab.phase);
-        let (casts, left) = (before.shadow.casts, !met.inside);
+        let (before, one, phase) = (*path, extinctions.t.each(1.0), &walk.slab.phase);
+        let (casts, left) = (before.shadow.casts, !extinctions.inside);
         path.score = one.each(0.0);
-        let goes_on = walk.collide(path, route, met, random);
+        let goes_on = walk.collide(path, route, extinctions, random);
         let begins = path.shadow.casts & !casts;
         let shadow = &mut path.shadow;
         let meets = begins & path.meets;
         match self.bug {
-            Bug::ShadowTwice => path.score.scale_where(casts & left, before.shadow.found),
+            Bug::ShadowTwice => path.score.scale_where(casts & left, before.shadow.lit),
             Bug::HitAlone => path.score.set_where(before.seeks & left, one),
             Bug::NullsMissing => path.ratio.set_where(before.seeks, before.ratio),
             Bug::LastSegment => {
-                let depth = flight_to_end(self.setup, met.t) / path.cosine;
-                shadow.found.set_where(begins, depth.exp());
+                let depth = flight_to_end(self.setup, extinctions.t) / path.cosine;
+                shadow.lit.set_where(begins, depth.exp());
             }
             Bug::CosineMissing => shadow.density.scale_where(begins, one / path.cosine),
             Bug::Upright => path.cosine.set_where(begins, one),

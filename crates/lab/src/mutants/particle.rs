@@ -232,21 +232,23 @@ impl Change<InRod<'_>> for Bug {
         walk: &InRod,
         particle: &mut rod::Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let before = *particle;
-        let goes_on = walk.collide(particle, route, met, random);
+        let goes_on = walk.collide(particle, route, extinctions, random);
         let scattered = before.order.below(particle.order);
-        let (albedo, forward) = (walk.rod.albedo.value(met.t), walk.rod.forward.value(met.t));
+        let (albedo, forward) =
+            (walk.rod.albedo.value(extinctions.t), walk.rod.forward.value(extinctions.t));
         match self {
             Self::OneNumber => {
-                particle.is_forward = before.is_forward ^ (scattered & forward.at_most(met.number));
+                particle.is_forward =
+                    before.is_forward ^ (scattered & forward.at_most(extinctions.number));
             }
             Self::Backward => particle.is_forward ^= scattered,
             _ => {}
         }
-        let events = (walk.steps.rule.probabilities(met.ratio(), albedo), scattered);
+        let events = (walk.steps.rule.probabilities(extinctions.ratio(), albedo), scattered);
         let weight = self.weight(particle.weight, before.weight, events, albedo);
         particle.weight.set_where(goes_on, weight);
         goes_on
@@ -290,17 +292,17 @@ impl Change<InSlab<'_>> for Bug {
         walk: &InSlab,
         particle: &mut slab::Particle<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let (before, is_backward) = (*particle, *self == Self::Backward);
         let turns_from = if is_backward { -before.cosine } else { before.cosine };
         particle.cosine = turns_from;
-        let goes_on = walk.collide(particle, route, met, random);
+        let goes_on = walk.collide(particle, route, extinctions, random);
         let scattered = !(particle.cosine - turns_from).equals(0.0);
         particle.cosine.set_where(!scattered, before.cosine);
-        let albedo = met.t.each(walk.albedo);
-        let events = (walk.rule.probabilities(met.ratio(), albedo), scattered);
+        let albedo = extinctions.t.each(walk.albedo);
+        let events = (walk.rule.probabilities(extinctions.ratio(), albedo), scattered);
         let weight = self.weight(particle.weight, before.weight, events, albedo);
         particle.weight.set_where(goes_on, weight);
         goes_on
@@ -346,17 +348,22 @@ impl<T: Tally> Change<InSpace<'_, T>> for Bug {
         walk: &InSpace<T>,
         state: &mut State<L, T::Found<L>>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
         let weight = state.path.weight;
         if *self == Self::NumberTwice {
-            let of_flight = |_, _| Lane::exp(-met.number);
-            return walk.collide(state, route, met, &mut Renumbered::new(random, of_flight));
+            let of_flight = |_, _| Lane::exp(-extinctions.number);
+            return walk.collide(
+                state,
+                route,
+                extinctions,
+                &mut Renumbered::new(random, of_flight),
+            );
         }
-        let goes_on = walk.collide(state, route, met, random);
+        let goes_on = walk.collide(state, route, extinctions, random);
         let albedo = weight.each(walk.scene.albedo.even().unwrap_or(f64::NAN));
-        let ratio = met.in_space[0] / state.sampling;
+        let ratio = extinctions.in_space[0] / state.sampling;
         let events = (walk.particle.rule.probabilities(ratio, albedo), state.scattered);
         let weight = self.weight(state.path.weight, weight, events, albedo);
         state.path.weight.set_where(goes_on, weight);

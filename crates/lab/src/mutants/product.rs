@@ -145,7 +145,7 @@ const LINES: &[MutantRow<MutantRule, Bug<Transmittance>>] = &[
     ("draw-clamped", "max(0, X) for X", BELOW, CheckId::Mean, Bug::Step(Slip { score: Some(|_, x| x.max(0.0)), ..RIGHT })),
     ("residual-clamped", "max(0, σ_t − σ_c) for σ_t − σ_c", NEGATIVE, CheckId::Mean, Bug::Rule(|_, r| Weight.at(r.max(0.0)))),
     ("residual-absolute", "|σ_t − σ_c| for σ_t − σ_c", NEGATIVE, CheckId::Mean, Bug::Rule(|_, r| Weight.at(r.abs()))),
-    ("weight-global-majorant", "flown with the local σ̂, divided by the largest", STEPS, CheckId::Mean, Bug::Step(Slip { used: Some(|walk, found| found / (walk.mean_free_path * walk.sampling.corner_values().fold(0.0, f64::max))), ..RIGHT })),
+    ("weight-global-majorant", "flown with the local σ̂, divided by the largest", STEPS, CheckId::Mean, Bug::Step(Slip { used: Some(|walk, computed| computed / (walk.mean_free_path * walk.sampling.corner_values().fold(0.0, f64::max))), ..RIGHT })),
     ("last-factor-missing", "the draw is the weight before the last collision", BELOW, CheckId::Mean, Bug::Step(Slip { score: Some(|walk, _| walk.before), ..RIGHT })),
     ("roulette-uncompensated", "below a weight of 0.1 Russian roulette ends half of the walks and leaves the others as they are", DENSE, CheckId::Lookups, Bug::Step(Slip { ends: Some(|walk, uniform| (walk.weight.abs() < 0.1 && uniform() < 0.5).then_some(End::Lost)), ..RIGHT })),
     ("cut-off", "below a weight of 0.1 the walk ends as 0", DENSE, CheckId::Lookups, Bug::Step(Slip { ends: Some(|walk, _| (walk.weight.abs() < 0.1).then_some(End::Lost)), ..RIGHT })),

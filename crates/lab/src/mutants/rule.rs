@@ -46,11 +46,11 @@ impl<R: Collision> Collision for Wrong<R> {
     }
 
     #[inline(always)]
-    fn absorption<L: Lane>(&self, met: &Extinctions<L>, number: L) -> L::Mask {
+    fn absorption<L: Lane>(&self, extinctions: &Extinctions<L>, number: L) -> L::Mask {
         if self.mistake.is_none() {
-            return self.rule.absorption(met, number);
+            return self.rule.absorption(extinctions, number);
         }
-        self.at(met.ratio()).survival.at_most(number)
+        self.at(extinctions.ratio()).survival.at_most(number)
     }
 
     #[inline(always)]

@@ -230,17 +230,17 @@ impl<const COLLIDES: bool> Change<ToVertices<'_, true, COLLIDES>> for Wrong<'_> 
         walk: &ToVertices<true, COLLIDES>,
         path: &mut Path<L>,
         route: &mut Route<impl BothWays<L>>,
-        met: &TentativeCollision<L>,
+        extinctions: &TentativeCollision<L>,
         random: &mut impl Random<L>,
     ) -> L::Mask {
-        let (before, mut met, one) = (*path, *met, met.t.each(1.0));
+        let (before, mut extinctions, one) = (*path, *extinctions, extinctions.t.each(1.0));
         if self.bug == Bug::AbsorbedGoOn {
-            let threshold = met.number * route.here.sampling();
-            let scatters = threshold.below(met.extinction * self.setup.problem.albedo());
-            met.number.set_where(path.flies & !path.is_chosen & !scatters, one);
+            let threshold = extinctions.number * route.here.sampling();
+            let scatters = threshold.below(extinctions.extinction * self.setup.problem.albedo());
+            extinctions.number.set_where(path.flies & !path.is_chosen & !scatters, one);
         }
         path.score = one.each(0.0);
-        let goes_on = walk.collide(path, route, &met, random);
+        let goes_on = walk.collide(path, route, &extinctions, random);
         let scored = !path.score.equals(0.0);
         // What scored may have set out for its collision.
         let mut scoring = *path;

@@ -83,7 +83,7 @@ pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
             let make = if is_common { AlongRay::common } else { AlongRay::new };
             let mut walk = make(setup, &Heroes::Uniform, tracker, Wrong { bug, count });
             if bug == Bug::ByLuminance {
-                walk.law = HeroDistribution::new(&Heroes::Luminance, count);
+                walk.distribution = HeroDistribution::new(&Heroes::Luminance, count);
             }
             walk.draw(medium, random)
         })
@@ -116,7 +116,7 @@ impl WalkEvents for Wrong {
         match self.bug {
             Bug::Raw => {
                 let largest =
-                    shares.iter().fold(right.each(0.0), |most, &share| most.or_more(share));
+                    shares.iter().fold(right.each(0.0), |maximum, &share| maximum.or_more(share));
                 [right, largest]
             }
             Bug::Forgotten => [Chance::Average.of_null(shares); 2],

@@ -95,10 +95,10 @@ impl<const GOES_ON: bool, const GAINS: bool, const CASTS_ANEW: bool> WalkEvents
         self.casts
     }
 
-    fn weighing(&self, found: PathTechnique) -> Weighing {
-        let has_next_event = self.casts && found != PathTechnique::Unscattered;
+    fn weighing(&self, light: PathTechnique) -> Weighing {
+        let has_next_event = self.casts && light != PathTechnique::Unscattered;
         let right = Weighing { has_next_event, ..Weighing::RIGHT };
-        match (self.bug, found) {
+        match (self.bug, light) {
             (Bug::ExitMissing, PathTechnique::Hit | PathTechnique::Unscattered) => {
                 Weighing { last_piece: LastPiece::InContribution, ..right }
             }

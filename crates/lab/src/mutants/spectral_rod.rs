@@ -79,7 +79,7 @@ impl HeroWeights for Wrong {
         (!self.tracks).then_some(&Heroes::Uniform)
     }
 
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+    fn probability(&self, albedos: &[f64], hero: usize) -> f64 {
         if self.tracks { mean(albedos) } else { albedos[hero] }
     }
 
@@ -89,7 +89,7 @@ impl HeroWeights for Wrong {
         }
         let divisor = match self.bug {
             Bug::ChanceKept => 1.0,
-            Bug::Largest => albedos.iter().fold(0.0f64, |most, &a| most.max(a)),
+            Bug::Largest => albedos.iter().fold(0.0f64, |maximum, &a| maximum.max(a)),
             _ => mean(albedos),
         };
         relative_to(albedos, divisor, order)

@@ -123,7 +123,7 @@ pub fn mutants() -> Vec<Mutant<Sphere>> {
 }
 
 impl WalkEvents for Bug {
-    fn chance<L: Lane>(&self, right: L) -> L {
+    fn probability<L: Lane>(&self, right: L) -> L {
         if *self == Self::NullsInOne { right.each(1.0) } else { right }
     }
 

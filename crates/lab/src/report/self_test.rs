@@ -23,17 +23,17 @@ const STREAMS: &[Shown] = shown!(&StreamVerdicts: "law", "known", "pass", "fail"
 const MUTANTS: &[Shown] = shown!(&Caught: "mutant", "place" 1, "check", "draws", "others" 2);
 
 /// Returns the tables for the screen.
-pub fn table(found: &SelfTest, pen: Pen) -> String {
+pub fn table(computed: &SelfTest, pen: Pen) -> String {
     let mut text = String::new();
-    promises(&mut text, pen, &found.calibration);
-    streams(&mut text, pen, &found.streams);
-    mutants(&mut text, pen, &found.mutants);
-    let verdict = if found.holds() {
+    promises(&mut text, pen, &computed.calibration);
+    streams(&mut text, pen, &computed.streams);
+    mutants(&mut text, pen, &computed.mutants);
+    let verdict = if computed.holds() {
         pen.paint(Paint::Green, "every promise is kept and every mutant is caught")
     } else {
         pen.paint(Paint::Red, "a promise is broken or a mutant escapes")
     };
-    let _ = writeln!(text, "{verdict} · {} s", short(found.seconds, 3));
+    let _ = writeln!(text, "{verdict} · {} s", short(computed.seconds, 3));
     text
 }
 
@@ -119,7 +119,7 @@ table! {
 
 table! {
     impl<'a> for &'a StreamVerdicts {
-        "law": "Distribution of the draws" = |verdicts| &verdicts.law;
+        "law": "Distribution of the draws" = |verdicts| &verdicts.distribution;
         "known": "What the check is told of it" = |verdicts| &verdicts.known;
         "streams": "Number of streams" = |verdicts| verdicts.streams;
         "pass": "Number that pass" = |verdicts| verdicts.passed;
@@ -147,18 +147,18 @@ table! {
 }
 
 /// Returns the tables as CSV files.
-pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
+pub fn artifacts(computed: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![
         fields::artifact(
             "self-test/calibration.csv",
             &<&Rate>::of_files(),
-            rates(&found.calibration),
+            rates(&computed.calibration),
         )?,
         fields::artifact(
             "self-test/foreign-streams.csv",
             &<&StreamVerdicts>::fields(),
-            &found.streams,
+            &computed.streams,
         )?,
-        fields::artifact("self-test/mutants.csv", &<&Caught>::of_files(), &found.mutants)?,
+        fields::artifact("self-test/mutants.csv", &<&Caught>::of_files(), &computed.mutants)?,
     ])
 }

@@ -113,21 +113,22 @@ fn on_stands<T: Send>(
         }
         let plan = plans.iter().position(|plan| is_at(plan, &target)).map(|at| plans.remove(at));
         let stand = Stand { target, plan, passes: None };
-        groups.push(BugGroup { stand, bugs: vec![numbered], found: Vec::new() });
+        groups.push(BugGroup { stand, bugs: vec![numbered], computed: Vec::new() });
     }
-    parallel::change(&mut groups, |BugGroup { stand, bugs, found }| {
-        found.extend(bugs.iter().map(|(number, known)| (*number, draw(stand, known))));
+    parallel::change(&mut groups, |BugGroup { stand, bugs, computed }| {
+        computed.extend(bugs.iter().map(|(number, known)| (*number, draw(stand, known))));
     });
-    let mut found: Vec<(usize, T)> = groups.into_iter().flat_map(|group| group.found).collect();
-    found.sort_by_key(|(number, _)| *number);
-    Ok(found.into_iter().map(|(_, found)| found).collect())
+    let mut computed: Vec<(usize, T)> =
+        groups.into_iter().flat_map(|group| group.computed).collect();
+    computed.sort_by_key(|(number, _)| *number);
+    Ok(computed.into_iter().map(|(_, computed)| computed).collect())
 }
 
 /// The bugs of one stand with their numbers, and their results.
 struct BugGroup<'a, T> {
     stand: Stand<'a>,
     bugs: Vec<(usize, KnownBug)>,
-    found: Vec<(usize, T)>,
+    computed: Vec<(usize, T)>,
 }
 
 /// Returns whether a plan of one experiment is that of a target.
@@ -238,7 +239,7 @@ impl JudgedExperiment {
     /// Returns which checks fail.
     fn pattern(&self) -> Pattern {
         let mut pattern = Pattern::default();
-        for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
+        for finding in self.findings.iter().filter(|computed| computed.verdict == Verdict::Fail) {
             pattern.note(finding.check, finding.gate.map(|gate| gate.mean));
         }
         pattern

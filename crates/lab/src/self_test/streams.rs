@@ -209,7 +209,8 @@ impl DrawDistribution {
             Self::Narrow => 1.0 + NARROW * (unit(rng) - 0.5),
             Self::Pareto(a) => (1.0 - unit(rng)).powf(-1.0 / a) - 1.0,
             Self::Signed => {
-                let number = Poisson::new(MEAN_FACTORS).map_or(0.0, |law| law.sample(rng));
+                let number =
+                    Poisson::new(MEAN_FACTORS).map_or(0.0, |distribution| distribution.sample(rng));
                 let mut product = 1.0;
                 let mut left = number;
                 while left >= 1.0 {
@@ -242,7 +243,7 @@ impl StreamVerdicts {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StreamVerdicts {
     /// The distribution.
-    pub law: String,
+    pub distribution: String,
     /// The claim.
     pub known: String,
     /// Number of streams that were judged.
@@ -259,39 +260,45 @@ pub struct StreamVerdicts {
 
 /// Judges a number of streams of every distribution with every claim; `step` is called after each stream.
 pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
-    LAWS.iter().flat_map(|&law| of_law(law, streams, step)).collect()
+    LAWS.iter().flat_map(|&distribution| of_law(distribution, streams, step)).collect()
 }
 
-fn of_law(law: DrawDistribution, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
-    let wanted = Options { alpha: ALPHA, ..Options::default() };
+fn of_law(
+    distribution: DrawDistribution,
+    streams: u64,
+    step: &(dyn Fn(u64) + Sync),
+) -> Vec<StreamVerdicts> {
+    let expected = Options { alpha: ALPHA, ..Options::default() };
     let trials: Vec<(Claims, CheckedClaim)> = CLAIMS
         .into_iter()
         .filter_map(|known| {
-            let trial = CheckedClaim::new(law.claim(known)?, wanted, Some(DRAWS as u64)).ok()?;
+            let trial =
+                CheckedClaim::new(distribution.claim(known)?, expected, Some(DRAWS as u64)).ok()?;
             Some((known, trial))
         })
         .collect();
     let judged: Vec<Vec<(Verdict, String)>> = parallel::numbered(streams, |stream| {
-        let draws = law.draws(stream);
-        let found = trials.iter().map(|(_, trial)| {
+        let draws = distribution.draws(stream);
+        let computed = trials.iter().map(|(_, trial)| {
             let judgement = trial.judge_all(&draws);
             (judgement.verdict, judgement.reason)
         });
-        let found = found.collect();
+        let computed = computed.collect();
         step(1);
-        found
+        computed
     });
     let verdicts = trials.iter().enumerate().map(|(k, (known, _))| {
-        let count = |verdict| judged.iter().filter(|found| found[k].0 == verdict).count() as u64;
-        let failure = judged.iter().find(|found| found[k].0 == Verdict::Fail);
+        let count =
+            |verdict| judged.iter().filter(|computed| computed[k].0 == verdict).count() as u64;
+        let failure = judged.iter().find(|computed| computed[k].0 == Verdict::Fail);
         StreamVerdicts {
-            law: law.to_string(),
+            distribution: distribution.to_string(),
             known: known.to_string(),
             streams,
             passed: count(Verdict::Pass),
             failed: count(Verdict::Fail),
             inconclusive: count(Verdict::Inconclusive),
-            reason: failure.map_or(String::new(), |found| found[k].1.clone()),
+            reason: failure.map_or(String::new(), |computed| computed[k].1.clone()),
         }
     });
     verdicts.collect()

@@ -27,11 +27,11 @@ const BOUND: f64 = 516.0 * f64::EPSILON / 2.0;
 /// All rows.
 pub fn rows(run: Run) -> Vec<TrialRow> {
     let mut rows = Vec::new();
-    for law in [UNIFORM, NEAR_CONSTANT] {
+    for distribution in [UNIFORM, NEAR_CONSTANT] {
         let row = |what: &str, measure, bound| {
             TrialRow::new(
-                format!("{what} of {}", law.name),
-                format!("1e9 draws, {}", law.range),
+                format!("{what} of {}", distribution.name),
+                format!("1e9 draws, {}", distribution.range),
                 measure,
                 bound,
             )
@@ -46,7 +46,7 @@ pub fn rows(run: Run) -> Vec<TrialRow> {
             [8, 256],
             of_law,
             || WORD,
-            |&seed, seen| whole_numbers(law, seed, seen),
+            |&seed, seen| whole_numbers(distribution, seed, seen),
         ));
     }
     let range = "262144 draws, one of them 1e3 … 1e60";
@@ -119,18 +119,18 @@ fn whole(k: i128) -> DoubleDouble {
 }
 
 /// Buffers of whole numbers, merged in a random tree, and then with themselves.
-fn whole_numbers(law: OffsetDraws, seed: u64, seen: &mut Seen) -> Option<()> {
-    let (mut stream, centre) = (stream(seed), 1_i64 << (law.bits - 1));
-    let shift = law.offset + centre as f64 * law.unit;
+fn whole_numbers(distribution: OffsetDraws, seed: u64, seen: &mut Seen) -> Option<()> {
+    let (mut stream, centre) = (stream(seed), 1_i64 << (distribution.bits - 1));
+    let shift = distribution.offset + centre as f64 * distribution.unit;
     let mut exact = [0_i128; 4];
     let mut buffers: Vec<(Tally, Powers)> = Vec::new();
     for _ in 0..BUFFERS {
         let mut draw = || {
-            let k = (stream.word() >> (64 - law.bits)).cast_signed();
+            let k = (stream.word() >> (64 - distribution.bits)).cast_signed();
             let off = i128::from(k - centre);
             let powers = [off, off * off, off * off * off, off * off * off * off];
             exact.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power);
-            law.offset + k as f64 * law.unit
+            distribution.offset + k as f64 * distribution.unit
         };
         let draws: Vec<f64> = (0..BUFFER).map(|_| draw()).collect();
         let shifted: Vec<f64> = draws.iter().map(|x| x - shift).collect();
@@ -152,14 +152,17 @@ fn whole_numbers(law: OffsetDraws, seed: u64, seen: &mut Seen) -> Option<()> {
     let draws = DoubleDouble::from((BUFFER * BUFFERS) as f64);
     let raw = exact.map(|sum| whole(sum) / draws);
     let [second, fourth] = central(raw, DoubleDouble::ONE);
-    let (n, unit) = (draws.scaled(DOUBLINGS), DoubleDouble::from(law.unit));
+    let (n, unit) = (draws.scaled(DOUBLINGS), DoubleDouble::from(distribution.unit));
     let variance = second * n / (n - 1.0);
     let moments = tally.moments()?;
-    for found in [moments.mean, powers.mean()] {
-        seen.see(0, ((DoubleDouble::from(found) / unit - raw[0]) / variance.sqrt()).abs().value());
+    for computed in [moments.mean, powers.mean()] {
+        seen.see(
+            0,
+            ((DoubleDouble::from(computed) / unit - raw[0]) / variance.sqrt()).abs().value(),
+        );
     }
-    for found in [moments.variance?, powers.variance()] {
-        seen.relative(1, found, variance * unit * unit);
+    for computed in [moments.variance?, powers.variance()] {
+        seen.relative(1, computed, variance * unit * unit);
     }
     seen.relative(2, powers.kurtosis(), fourth / (second * second));
     Some(())
@@ -179,8 +182,8 @@ fn one_huge_draw(&Huge { power, seed }: &Huge, seen: &mut Seen) -> Option<()> {
     let central =
         |k| x.iter().map(|&x| (DoubleDouble::from(x) - mean).powi(k)).sum::<DoubleDouble>() / n;
     let [second, fourth] = [central(2), central(4)];
-    for found in [tally.moments()?.variance?, powers.variance()] {
-        seen.relative(0, found, second * n / (n - DoubleDouble::ONE));
+    for computed in [tally.moments()?.variance?, powers.variance()] {
+        seen.relative(0, computed, second * n / (n - DoubleDouble::ONE));
     }
     seen.relative(1, powers.kurtosis(), fourth / (second * second));
     Some(())

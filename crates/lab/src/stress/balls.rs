@@ -183,24 +183,24 @@ impl Even {
 }
 
 /// Homogeneous balls under the sky.
-fn even(asked: &Asked, seen: &mut Seen) -> Option<()> {
-    let (depth, albedo) = (asked.depth, asked.albedo.max(1e-9));
-    let places = asked.places.iter().map(|&place| Observable::Mean(place));
+fn even(requested: &Asked, seen: &mut Seen) -> Option<()> {
+    let (depth, albedo) = (requested.depth, requested.albedo.max(1e-9));
+    let places = requested.places.iter().map(|&place| Observable::Mean(place));
     let ray = |offset| Observable::Radiance { offset, from: f64::NEG_INFINITY };
-    let asked: Vec<Observable> = places.chain(asked.offsets.map(ray)).collect();
+    let requested: Vec<Observable> = places.chain(requested.offsets.map(ray)).collect();
     let extinction = move |_: f64| depth;
     let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
-    let found = answers(&ball, albedo, SKY, BallResolution::COARSE, &asked);
+    let computed = answers(&ball, albedo, SKY, BallResolution::COARSE, &requested);
     // At a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
     let near =
         if albedo == 1.0 { 1.0 - DoubleDouble::from(1e-20) } else { DoubleDouble::from(albedo) };
-    let (found, even) = (seen.found(0, found)?, Even::new(depth, near, ORDINATES)?);
-    for (asked, found) in asked.iter().zip(found) {
-        seen.at(format_args!("{asked:?}"));
-        match *asked {
-            Observable::Mean(r) => seen.stated(0, found, even.mean(r * depth)),
+    let (computed, even) = (seen.computed(0, computed)?, Even::new(depth, near, ORDINATES)?);
+    for (requested, computed) in requested.iter().zip(computed) {
+        seen.at(format_args!("{requested:?}"));
+        match *requested {
+            Observable::Mean(r) => seen.stated(0, computed, even.mean(r * depth)),
             Observable::Radiance { offset, .. } => {
-                seen.stated(1, found, even.radiance(offset * depth));
+                seen.stated(1, computed, even.radiance(offset * depth));
             }
         }
     }
@@ -209,36 +209,36 @@ fn even(asked: &Asked, seen: &mut Seen) -> Option<()> {
 
 /// White balls in white light: J = 1.
 fn white(scene: &Scene, seen: &mut Seen) -> Option<()> {
-    let (asked, extinction) = (scene.asked(), |r2| scene.field.extinction(r2));
+    let (requested, extinction) = (scene.asked(), |r2| scene.field.extinction(r2));
     let ball = Ball { radius: 1.0, centre: scene.centre(), extinction: &extinction };
     let lights = Lights { environment: 1.0, core: 1.0 };
-    let found = answers(&ball, 1.0, lights, BallResolution::COARSE, &asked);
-    for (asked, found) in asked.iter().zip(seen.found(0, found)?) {
-        seen.at(format_args!("{asked:?}"));
-        seen.stated(0, found, DoubleDouble::ONE);
+    let computed = answers(&ball, 1.0, lights, BallResolution::COARSE, &requested);
+    for (requested, computed) in requested.iter().zip(seen.computed(0, computed)?) {
+        seen.at(format_args!("{requested:?}"));
+        seen.stated(0, computed, DoubleDouble::ONE);
     }
     Some(())
 }
 
 /// Nodes, directions and grading of which the answers are good to a small part of what is stated.
 pub const FINER: BallResolution =
-    BallResolution { nodes: 9, directions: 9, surface: 11, core: 14, chance: 1e-10 };
+    BallResolution { nodes: 9, directions: 9, surface: 11, core: 14, probability: 1e-10 };
 
 /// Other albedos and lights, by a finer solution.
 fn finer(scene: &Scene, seen: &mut Seen) -> Option<()> {
-    let (asked, extinction) = (scene.asked(), |r2| scene.field.extinction(r2));
+    let (requested, extinction) = (scene.asked(), |r2| scene.field.extinction(r2));
     let is_dark = scene.core() > 0.0;
     let lights = if is_dark { Lights { environment: 0.0, core: 1.0 } } else { SKY };
     let ball = Ball { radius: 1.0, centre: scene.centre(), extinction: &extinction };
-    let of = |resolution| answers(&ball, scene.albedo, lights, resolution, &asked);
-    let (found, fine) = seen.found(0, of(BallResolution::COARSE).zip(of(FINER)))?;
-    for ((asked, found), fine) in asked.iter().zip(found).zip(fine) {
-        seen.at(format_args!("{asked:?}"));
+    let of = |resolution| answers(&ball, scene.albedo, lights, resolution, &requested);
+    let (computed, fine) = seen.computed(0, of(BallResolution::COARSE).zip(of(FINER)))?;
+    for ((requested, computed), fine) in requested.iter().zip(computed).zip(fine) {
+        seen.at(format_args!("{requested:?}"));
         // Nobody draws against an answer that is known no better.
-        if found.error > BLURRED * found.value {
+        if computed.error > BLURRED * computed.value {
             seen.skip(0);
         } else {
-            seen.stated(0, found, DoubleDouble::from(fine.value));
+            seen.stated(0, computed, DoubleDouble::from(fine.value));
         }
     }
     Some(())

@@ -41,8 +41,8 @@ fn trial(Layers { collisions, layers }: &Layers, seen: &mut Seen) {
         [("next-flight", &NextFlight, false), ("unidirectional-mis", &UnidirectionalMis, true)];
     for (name, source, is_shared) in sources {
         seen.at(name);
-        let found = volterra::predict(&mesh, sampling, source).channels[0].moments;
-        seen.moments([0, 1], found, &raw(&breaks, &values, sampling, is_shared));
+        let computed = volterra::predict(&mesh, sampling, source).channels[0].moments;
+        seen.moments([0, 1], computed, &raw(&breaks, &values, sampling, is_shared));
     }
 }
 

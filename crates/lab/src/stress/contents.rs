@@ -62,12 +62,12 @@ const ROUNDING: f64 = 2e-15;
 
 /// Adds an error in units of the stated error and the rounding of the quadrature, less half a unit in the last place.
 fn see(volume: &Volume, exact: DoubleDouble, chords: f64, seen: &mut Seen) -> Option<()> {
-    let found = content::by_chords(volume, chords)?;
+    let computed = content::by_chords(volume, chords)?;
     if exact.high <= 1e-290 {
         return None;
     }
-    let allowed = found.error + ROUNDING * exact.high;
-    seen.beyond_rounding(0, Known::new(found.value, allowed), exact);
+    let allowed = computed.error + ROUNDING * exact.high;
+    seen.beyond_rounding(0, Known::new(computed.value, allowed), exact);
     Some(())
 }
 

@@ -61,9 +61,9 @@ fn flights(Layers { layers }: &Layers, seen: &mut Seen) {
         exact += alive * if sigma > 0.0 { -(-depth).exp_m1() / sigma } else { width };
         alive = alive * (-depth).exp();
     }
-    let found =
+    let computed =
         free_flight::predict(&Mesh::new(pieces(&breaks, &values)), CountDistribution::always(0.0));
-    seen.stated(0, found.channels[0].truth, exact);
+    seen.stated(0, computed.channels[0].truth, exact);
 }
 
 fn collisions(walk: &Terminating, seen: &mut Seen) -> Option<()> {
@@ -75,11 +75,11 @@ fn collisions(walk: &Terminating, seen: &mut Seen) -> Option<()> {
     let rule = Single::Terminating;
     let product =
         Product { with_distributions: false, ..Product::new(&mesh, &flown, &none, &rule) };
-    let law = product.predict().lookups?;
+    let distribution = product.predict().lookups?;
     let ends = 1.0 - (1.0 - DoubleDouble::from(sigma) / sampling).abs();
     let flown = DoubleDouble::product(sampling, length);
     let exact = if ends.high > 0.0 { -(-(flown * ends)).exp_m1() / ends } else { flown };
-    seen.stated(0, lookups(&law), exact);
+    seen.stated(0, lookups(&distribution), exact);
     Some(())
 }
 
@@ -92,11 +92,11 @@ fn curves(curve: &Curve, seen: &mut Seen) {
     let distances = places.map(|place| length * place);
     let mesh = Mesh::new(homogeneous(sigma, length));
     let flown = Piecewise::constant(sampling, Span::new(0.0, length));
-    let found = predict_curve(&Product::new(&mesh, &flown, &Control::None, &Weight), &distances);
+    let computed = predict_curve(&Product::new(&mesh, &flown, &Control::None, &Weight), &distances);
     let rate = DoubleDouble::product(sigma, sigma) / sampling;
     let mut before = DoubleDouble::default();
     for (i, &distance) in distances.iter().enumerate() {
-        let (channel, step) = (&found.channels[i], &found.increments[i]);
+        let (channel, step) = (&computed.channels[i], &computed.increments[i]);
         seen.stated(0, channel.truth, (-DoubleDouble::product(sigma, distance)).exp());
         let passed = rate * distance;
         if passed.high > 300.0 {

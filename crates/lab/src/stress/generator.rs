@@ -18,8 +18,9 @@ pub fn rows(run: Run) -> Vec<TrialRow> {
     };
     let mut rows = run.fill([64, 64], [ends], word, edges);
     let range = "τ = 1e-18 … 36, all 2⁵³ numbers";
-    let chance = TrialRow::new("probability of a collision", range, Measure::Absolute, 3.0 * GRAIN);
-    rows.extend(run.fill([400, 4000], [chance], || sized(-18.0, 1.55), collisions));
+    let probability =
+        TrialRow::new("probability of a collision", range, Measure::Absolute, 3.0 * GRAIN);
+    rows.extend(run.fill([400, 4000], [probability], || sized(-18.0, 1.55), collisions));
     let distance = TrialRow::relative("distance of a flight", "σ̂ = 1e-9 … 1e9", 1e-15);
     rows.extend(run.fill([950, 38_000], [distance], Flight::any, distances));
     rows

@@ -94,9 +94,9 @@ impl BallChord {
     }
 }
 
-fn see_ends(seen: &mut Seen, found: [Known; 2], exact: [DoubleDouble; 2]) {
-    for (found, exact) in found.into_iter().zip(exact) {
-        seen.see(0, over(off(found.value, exact), found.error));
+fn see_ends(seen: &mut Seen, computed: [Known; 2], exact: [DoubleDouble; 2]) {
+    for (computed, exact) in computed.into_iter().zip(exact) {
+        seen.see(0, over(off(computed.value, exact), computed.error));
     }
 }
 
@@ -129,9 +129,9 @@ fn optical_depth((depth, scene): &(f64, Scene), seen: &mut Seen) -> Option<()> {
     let chord = scene.chord(*depth)?;
     let medium = crossed(Arc::new(Constant::within(1.0, chord.ball)), chord.ray);
     let [from, to] = chord.exact()?;
-    let found = medium.optical_depth(medium.span());
-    let rounding = 0.5 * f64::EPSILON * found.value;
-    seen.see(0, (off(found.value, to - from) - rounding).max(0.0) / found.error);
+    let computed = medium.optical_depth(medium.span());
+    let rounding = 0.5 * f64::EPSILON * computed.value;
+    seen.see(0, (off(computed.value, to - from) - rounding).max(0.0) / computed.error);
     Some(())
 }
 
@@ -170,11 +170,11 @@ fn cuboid(cuboid: &Cuboid, seen: &mut Seen) -> Option<()> {
             if (far - to).high < 0.0 { far } else { to },
         ];
     }
-    let found = Bounds::Box(cube).ends(&ray);
+    let computed = Bounds::Box(cube).ends(&ray);
     let is_short = (exact[1] - exact[0]).high <= 1e-9 * ray.length;
-    if is_short || Span::new(found[0].value, found[1].value).is_empty() {
+    if is_short || Span::new(computed[0].value, computed[1].value).is_empty() {
         return None;
     }
-    see_ends(seen, found, exact);
+    see_ends(seen, computed, exact);
     Some(())
 }

@@ -103,10 +103,10 @@ fn pole(albedo: f64) -> Option<[DoubleDouble; 2]> {
     }
     // y coth y − 1 = 1/c − 1, of which 1 − c is exact; in 32 digits two steps are left to do.
     let mut y = n((0.5 * (low + high)).max((3.0 * (1.0 - albedo)).sqrt()));
-    let wanted = (1.0 - c) / c;
+    let expected = (1.0 - c) / c;
     for _ in 0..4 {
         let (sine, cosine) = hyperbolic(y);
-        let f = (y * cosine - sine) / sine - wanted;
+        let f = (y * cosine - sine) / sine - expected;
         let slope = cosine / sine - y / (sine * sine);
         y = y - f / slope;
     }
@@ -133,8 +133,8 @@ fn case(distances: &Distances, nodes: &[CaseNode], seen: &mut Seen) {
     let pole = pole(albedo);
     for &far in &distances.far {
         seen.at(format_args!("σ_t r = {far:e}"));
-        let found = infinite::collisions_within(albedo, far);
-        seen.stated(0, found, collisions(n(far), nodes, &g, pole, c));
+        let computed = infinite::collisions_within(albedo, far);
+        seen.stated(0, computed, collisions(n(far), nodes, &g, pole, c));
     }
     for &near in &distances.near {
         seen.at(format_args!("σ_t r = {near:e}"));
@@ -178,8 +178,8 @@ fn around(
 fn totals(&(albedo, cosine): &(f64, f64), seen: &mut Seen) {
     let albedo = albedo.min(1.0 - 1e-15);
     let exact = 2.0 / ((1.0 - n(albedo)) * (1.0 - DoubleDouble::product(albedo, cosine)));
-    let found = infinite::square_at_absorption(albedo, cosine);
-    seen.stated(0, Known::new(found, infinite::ROUNDING * found), exact);
+    let computed = infinite::square_at_absorption(albedo, cosine);
+    seen.stated(0, Known::new(computed, infinite::ROUNDING * computed), exact);
 }
 
 /// A place `x = tan φ` of the integral of H.

@@ -68,14 +68,14 @@ impl Case {
 
 fn truths(case: &Case, seen: &mut Seen) {
     let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
-    let found = rods::truth(&mesh, &rod);
+    let computed = rods::truth(&mesh, &rod);
     let exact = ExactScores::new(case, ParticleRule::Terminating, case.depth, 1);
     for (i, channel) in case.channels().into_iter().enumerate() {
         let Some(row) = row_of(channel) else { continue };
         seen.at(channel.name());
         let [exact, ..] = exact.powers(channel);
-        match found.as_ref().filter(|_| exact.high >= 1e-290) {
-            Some(found) => seen.stated(row, found[i], exact),
+        match computed.as_ref().filter(|_| exact.high >= 1e-290) {
+            Some(computed) => seen.stated(row, computed[i], exact),
             None => seen.skip(row),
         }
     }
@@ -85,14 +85,14 @@ fn moments((case, ratio, kind): &(Case, f64, usize), seen: &mut Seen) {
     let (sampling, rule) = (case.depth / ratio, rule(*ratio, *kind));
     let (mesh, rod) = rod_with(case.depth, &case.albedo, case.forward, case.channels());
     let flown = Piecewise::constant(sampling, mesh.support());
-    let found = rods::predict(&mesh, &rod, &flown, rule, true);
+    let computed = rods::predict(&mesh, &rod, &flown, rule, true);
     let exact = ExactScores::new(case, rule, sampling, 4);
     for (i, channel) in case.channels().into_iter().enumerate() {
         let Some(row) = row_of(channel) else { continue };
         seen.at(channel.name());
         // A moment that diverges says so, as `rods` checks.
         let raw = exact.powers(channel);
-        let known = found.channels[i].moments.filter(|_| raw[0].high >= 1e-70);
+        let known = computed.channels[i].moments.filter(|_| raw[0].high >= 1e-70);
         seen.resolved([row, row + 3], known, &raw);
     }
 }
@@ -124,10 +124,10 @@ impl<'a> ExactScores<'a> {
         let of = |albedo: f64| [0, 1, 2, 3, 4].map(|k| moments_of(rule, ratio, albedo, k));
         let odds: Vec<_> = (0..STRETCHES).map(|stretch| of(case.albedo(stretch))).collect();
         let fastest = |stretch: usize| {
-            odds[stretch].iter().fold(0.0, |most: f64, &[q, s]| {
+            odds[stretch].iter().fold(0.0, |maximum: f64, &[q, s]| {
                 let straight = 1.0 - q - s * case.forward;
                 let straight = (1.0 - q).high.abs().max(straight.high.abs());
-                most.max(sampling * (straight + s.high.abs()))
+                maximum.max(sampling * (straight + s.high.abs()))
             })
         };
         let ends: Vec<DoubleDouble> =
@@ -135,9 +135,10 @@ impl<'a> ExactScores<'a> {
         let line = PanelLine::new(&ends, fastest);
         let stretches = line.values(|stretch, _| stretch);
         let (sampling, orders) = (DoubleDouble::from(sampling), Default::default());
-        let mut found = Self { case, sampling, ratio, line, stretches, odds, powers, orders };
-        found.orders = [0, 1].map(|end| (1..=powers).map(|k| found.by_order(k, end)).collect());
-        found
+        let mut computed = Self { case, sampling, ratio, line, stretches, odds, powers, orders };
+        computed.orders =
+            [0, 1].map(|end| (1..=powers).map(|k| computed.by_order(k, end)).collect());
+        computed
     }
 
     /// `E[X], …, E[X^k]` of a channel, the others 0.

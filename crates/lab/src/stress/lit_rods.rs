@@ -71,12 +71,12 @@ fn lit(case: &Lit, seen: &mut Seen) -> Option<()> {
     let rod = LitRod::new(medium.clone(), &everywhere(albedo), &everywhere(forward));
     let (mesh, flown) = (Mesh::new(medium.clone()), everywhere(depth / ratio));
     let techniques = Techniques { shadow: Some(shadow), combination };
-    let found = lit::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments;
+    let computed = lit::predict(&mesh, &rod, &flown, techniques, true).channels[0].moments;
     let raw = moments(case, shadow);
     if raw[0].high < 1e-70 {
         return None;
     }
-    seen.resolved([0, 1], found, &raw);
+    seen.resolved([0, 1], computed, &raw);
     Some(())
 }
 
@@ -100,23 +100,23 @@ fn moments(case: &Lit, shadow: Shadow) -> [DoubleDouble; 4] {
         let left = losses.map(|loss| (-(loss * (1.0 - x))).exp());
         ways.map(|phase| ScatteringScores::new(case.combination, phase, left))
     });
-    let mut found: Vec<Solution<BothDirections>> = Vec::new();
+    let mut computed: Vec<Solution<BothDirections>> = Vec::new();
     for k in 1..=4 {
         let scored = |i: usize, way: usize| {
             let (phase, scores) = (ways[way], &scores[i][way]);
             let hit = |j: usize| binomial(k, j) * scores.with_hit(k, j);
             let later = |j: usize| {
-                let [later, _] = after([phase, 1.0 - phase], found[j - 1].at[i]);
+                let [later, _] = after([phase, 1.0 - phase], computed[j - 1].at[i]);
                 binomial(k, j) * scores.of_ray[k - j] * later
             };
             let hits: DoubleDouble = (1..=k).map(hit).sum();
             let later: DoubleDouble = (1..k).map(later).sum();
             scattered * (scores.of_ray[k] + phase * scores.alive * hits + later)
         };
-        found.push(line.both_ways(|_| rates, |i| [0, 1].map(|way| scored(i, way)), NOTHING));
+        computed.push(line.both_ways(|_| rates, |i| [0, 1].map(|way| scored(i, way)), NOTHING));
     }
     let unscattered = (-depth).exp();
-    std::array::from_fn(|k| unscattered + found[k].begin[0])
+    std::array::from_fn(|k| unscattered + computed[k].begin[0])
 }
 
 /// Values of 0, in both directions.
@@ -173,9 +173,9 @@ fn bidirectional(case: &Bidirectional, seen: &mut Seen) -> Option<()> {
         is_shared: false,
         has_shares: true,
     };
-    let found = bidirectional::predict(&scene, &rules, ratio, true);
+    let computed = bidirectional::predict(&scene, &rules, ratio, true);
     let raw = [1, 2, 3, 4].map(|k| of_paths(case, (order, s), k));
-    let channel = found.channels.first()?;
+    let channel = computed.channels.first()?;
     seen.at(format_args!("order {order}, s = {s}"));
     seen.stated(0, channel.truth, raw[0]);
     let moments = channel.moments?;

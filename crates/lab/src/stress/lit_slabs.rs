@@ -57,7 +57,7 @@ fn beam(slab: &Slab, seen: &mut Seen) {
     let cosine = slab.cosine.max(slab.depth / 60.0);
     let (mesh, problem, flown) = slab.problem(LightBehind::Distant(cosine));
     let techniques = Techniques { shadow: Some(slab.shadow), combination: Combination::NextEvent };
-    let found = lit::predict(&mesh, &problem, &flown, techniques, true);
+    let computed = lit::predict(&mesh, &problem, &flown, techniques, true);
     let (depth, null) = (DoubleDouble::from(slab.depth), 1.0 - DoubleDouble::from(slab.ratio));
     let towards = DoubleDouble::from(problem.phase.value(cosine));
     let raw = [1, 2, 3, 4].map(|k: usize| {
@@ -71,8 +71,8 @@ fn beam(slab: &Slab, seen: &mut Seen) {
         let between = if more.high == 0.0 { DoubleDouble::ONE } else { -(-more).exp_m1() / more };
         power(towards, k) * slab.albedo * depth * (-depth).exp() * between
     });
-    seen.stated(0, found.channels[0].truth, raw[0]);
-    seen.resolved([1, 2], found.channels[0].moments, &raw);
+    seen.stated(0, computed.channels[0].truth, raw[0]);
+    seen.resolved([1, 2], computed.channels[0].moments, &raw);
 }
 
 /// Hits and shadow rays, weighted, have the mean of shadow rays alone.

@@ -153,9 +153,9 @@ pub fn all(run: Run, done: &(dyn Fn(&str) + Sync)) -> Stress {
         || {
             let pages: Vec<_> = PAGES.entries().collect();
             parallel::map(&pages, |(page, rows)| {
-                let found = rows(run);
+                let computed = rows(run);
                 done(page.module);
-                found
+                computed
             })
         },
         || {

@@ -109,10 +109,10 @@ pub fn products(case: &Case, seen: &mut Seen) {
     let terminating = (0.0..=2.0).contains(&ratio.high).then_some(Single::Terminating);
     let mut of_rule = |name: &str, rule: &dyn Rule, losses: [DoubleDouble; 3]| {
         seen.at(name);
-        let found =
+        let computed =
             Product { with_distributions: false, ..Product::new(&mesh, &flown, &main, rule) }
                 .predict();
-        let Some(moments) = found.channels[0].moments else {
+        let Some(moments) = computed.channels[0].moments else {
             seen.skip(0);
             return seen.skip(1);
         };
@@ -120,14 +120,14 @@ pub fn products(case: &Case, seen: &mut Seen) {
         let [j2, j3, j4] = losses;
         let exponents = [j2, j2 * 6.0 - j3.scaled(2) + j4];
         let pairs = [moments.relative[0], moments.relative[2]].into_iter().zip(central(losses));
-        for (row, ((found, exact), exponent)) in pairs.zip(exponents).enumerate() {
+        for (row, ((computed, exact), exponent)) in pairs.zip(exponents).enumerate() {
             // What overflows must be infinite, never not a number, and nothing else may be.
             if exponent.high > 690.0 || !exact.high.is_finite() {
-                seen.see(row, if found > 1e290 { 0.0 } else { f64::NAN });
+                seen.see(row, if computed > 1e290 { 0.0 } else { f64::NAN });
             } else if exact.high.abs() < 1e-300 {
                 seen.skip(row);
             } else {
-                seen.see(row, exact.relative_error(found) / moments.error);
+                seen.see(row, exact.relative_error(computed) / moments.error);
             }
         }
     };
@@ -146,7 +146,7 @@ fn transmittances(&Depth { length, depth }: &Depth, seen: &mut Seen) {
     let medium = homogeneous(extinction, length);
     let depth = medium.optical_depth(medium.span());
     let unit = if depth.value > 300.0 { depth.value } else { 0.0 };
-    let found = transmittance(depth, unit);
+    let computed = transmittance(depth, unit);
     let exact = (unit - DoubleDouble::product(extinction, length)).exp();
-    seen.see(0, off(found.value, exact) / found.error);
+    seen.see(0, off(computed.value, exact) / computed.error);
 }

@@ -216,6 +216,6 @@ pub(super) fn roots(
 
 /// Solves equations; rows end with their right sides.
 pub(super) fn solved_pivoted(rows: Vec<Vec<DoubleDouble>>) -> Option<Vec<DoubleDouble>> {
-    let found = solved(rows, |x| x.high.abs(), true)?;
-    Some(found.into_iter().map(|[x]| x).collect())
+    let computed = solved(rows, |x| x.high.abs(), true)?;
+    Some(computed.into_iter().map(|[x]| x).collect())
 }

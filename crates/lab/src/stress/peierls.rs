@@ -127,7 +127,7 @@ impl<'a> Peierls<'a> {
                 [0.0, (-self.depth).exp() - self.depth * exponentials(self.depth)[1]]
             }
         };
-        let mut found: Vec<[f64; 2]> = lights.iter().map(straight).collect();
+        let mut computed: Vec<[f64; 2]> = lights.iter().map(straight).collect();
         for (panel, worth) in self.panels.iter().zip(worth.chunks(NODES)) {
             let quarters = (0..=4).map(|i| panel.x.from + 0.25 * panel.x.length() * f64::from(i));
             for (x, dx) in
@@ -138,15 +138,15 @@ impl<'a> Peierls<'a> {
                 let worth = [0, 1].map(|side| -> f64 {
                     polynomial.iter().zip(worth).map(|(factor, worth)| factor * worth[side]).sum()
                 });
-                for (light, found) in lights.iter().zip(&mut found) {
+                for (light, computed) in lights.iter().zip(&mut computed) {
                     let kernel = match *light {
                         IncidentLight::Collimated(cosine) => (-u / cosine).exp() / cosine,
                         IncidentLight::Diffuse => 2.0 * exponentials(u)[1],
                     };
-                    found.iter_mut().zip(worth).for_each(|(sum, w)| *sum += share * kernel * w);
+                    computed.iter_mut().zip(worth).for_each(|(sum, w)| *sum += share * kernel * w);
                 }
             }
         }
-        Some(found)
+        Some(computed)
     }
 }

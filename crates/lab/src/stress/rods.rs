@@ -118,8 +118,8 @@ fn truths(Parts { depth, forward, albedos }: &Parts, seen: &mut Seen) -> Option<
         [r1 + t1 * t1 * r2 * echoes, t1 * t2 * echoes]
     })?;
     let (mesh, rod) = rod_of(*depth, albedos, *forward);
-    for (found, exact) in rods::truth(&mesh, &rod)?.into_iter().zip(exact) {
-        if exact.high >= 1e-290 { seen.stated(0, found, exact) } else { seen.skip(0) }
+    for (computed, exact) in rods::truth(&mesh, &rod)?.into_iter().zip(exact) {
+        if exact.high >= 1e-290 { seen.stated(0, computed, exact) } else { seen.skip(0) }
     }
     Some(())
 }
@@ -202,22 +202,25 @@ impl Walked {
 }
 
 /// Returns lookups with the error that their check takes.
-pub(super) fn lookups(law: &CountDistribution) -> Known {
-    Known::new(law.mean, law.mean * law.error.max(CountDistribution::ERROR))
+pub(super) fn lookups(distribution: &CountDistribution) -> Known {
+    Known::new(
+        distribution.mean,
+        distribution.mean * distribution.error.max(CountDistribution::ERROR),
+    )
 }
 
 /// Variance and fourth central moment of the walks of three rules, where they diverge, and their lookups.
 fn walks(walked: &Walked, seen: &mut Seen) {
     let (mesh, rod) = rod_of(walked.depth, &[walked.albedo], walked.forward);
     let flown = Piecewise::constant(walked.sampling(), mesh.support());
-    let found = rods::predict(&mesh, &rod, &flown, rule(walked.ratio, walked.kind), true);
-    if let Some(law) = &found.lookups {
-        seen.stated(3, lookups(law), walked.collisions());
+    let computed = rods::predict(&mesh, &rod, &flown, rule(walked.ratio, walked.kind), true);
+    if let Some(distribution) = &computed.lookups {
+        seen.stated(3, lookups(distribution), walked.collisions());
     }
     let rates = [1, 2, 3, 4].map(|k| walked.rates(k));
     // Within two thousandths of the critical length either answer is right.
     let length = critical(rates[1]);
-    let is_known = found.channels[0].moments.is_some();
+    let is_known = computed.channels[0].moments.is_some();
     if (length - 1.0).abs() > 2e-3 {
         seen.wrong(2, is_known != (length > 1.0));
     }
@@ -226,7 +229,7 @@ fn walks(walked: &Walked, seen: &mut Seen) {
         return;
     }
     let raw = rates.map(leaving);
-    for (i, channel) in found.channels.iter().take(2).enumerate() {
+    for (i, channel) in computed.channels.iter().take(2).enumerate() {
         let Some(moments) = channel.moments else { continue };
         let raw = raw.map(|moment| moment[i]);
         if raw[0].high < 1e-70 {
@@ -251,9 +254,9 @@ fn near_critical(case: &NearCritical, seen: &mut Seen) -> Option<()> {
     }
     let (mesh, rod) = rod_of(walked.depth, &[walked.albedo], walked.forward);
     let flown = Piecewise::constant(walked.sampling(), mesh.support());
-    let found = rods::predict(&mesh, &rod, &flown, rule(walked.ratio, walked.kind), false);
+    let computed = rods::predict(&mesh, &rod, &flown, rule(walked.ratio, walked.kind), false);
     let raw = [1, 2].map(|k| leaving(walked.rates(k)));
-    for (i, channel) in found.channels.iter().take(2).enumerate() {
+    for (i, channel) in computed.channels.iter().take(2).enumerate() {
         seen.at(&channel.name);
         let [mean, square] = raw.map(|moment| moment[i]);
         match channel.moments.filter(|_| mean.high > 1e-70) {

@@ -145,14 +145,14 @@ fn homogeneous(
         if technique == PointTechnique::Delta && ratio < 1.0 {
             continue;
         }
-        let found = estimator.found(technique).prediction();
+        let computed = estimator.found(technique).prediction();
         let (raw, exact) = ray.exact(technique);
         let row = if number < 3 { 3 } else { 0 };
         seen.at(format_args!("{technique:?}"));
         // A spread that rounding hides is not told.
-        seen.resolved([row, row + 1], found.channels[0].moments, &raw);
-        match found.lookups.zip(exact) {
-            Some((law, exact)) => seen.stated(row + 2, lookups(&law), exact),
+        seen.resolved([row, row + 1], computed.channels[0].moments, &raw);
+        match computed.lookups.zip(exact) {
+            Some((distribution, exact)) => seen.stated(row + 2, lookups(&distribution), exact),
             None => seen.skip(row + 2),
         }
     }
@@ -165,11 +165,11 @@ fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
     let medium = problem.medium();
     let largest = Mesh::new(medium.clone()).largest(&|_, sigma| sigma);
     let largest = largest.map_or(1.0, |(_, largest)| largest);
-    let most = problem.shadow_majorant();
+    let maximum = problem.shadow_majorant();
     let tracking = match kind % 3 {
         0 => Tracking::Exact,
-        1 => Tracking::Ratio { sampling: shadow_scale * most, control: 0.0 },
-        _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * most },
+        1 => Tracking::Ratio { sampling: shadow_scale * maximum, control: 0.0 },
+        _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * maximum },
     };
     let technique = match kind / 3 {
         0 => PointTechnique::ByAngle(CameraTracking::Exact),
@@ -181,7 +181,7 @@ fn in_field(choices: &InField, seen: &mut Seen) -> Option<()> {
     let estimator = Estimator { problem: &problem, walk, tracking, count };
     let (raw, _) = varying(&estimator).exact(technique);
     seen.at(format_args!("{technique:?}, {tracking:?}"));
-    let found = estimator.found(technique).prediction().channels[0].moments;
-    seen.resolved([0, 1], found, &raw);
+    let computed = estimator.found(technique).prediction().channels[0].moments;
+    seen.resolved([0, 1], computed, &raw);
     Some(())
 }

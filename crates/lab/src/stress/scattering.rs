@@ -24,8 +24,8 @@ pub fn rows(run: Run) -> Vec<TrialRow> {
     let row = TrialRow::stated("single scattering, fields", range);
     rows.extend(run.fill([4, 1008], [row], lit_field, |field, seen| {
         let problem = field.problem()?;
-        let (found, exact) = (radiance(&problem), varying(&alone(&problem, 1.0)).radiance());
-        seen.stated(0, found, exact);
+        let (computed, exact) = (radiance(&problem), varying(&alone(&problem, 1.0)).radiance());
+        seen.stated(0, computed, exact);
         Some(())
     }));
     let range =
@@ -106,11 +106,12 @@ fn homogeneous(
 ) -> Option<()> {
     let (sigma, foot) = (depth / length, foot * length);
     let problem = lit(sigma, distance, foot, length, albedo)?;
-    let (found, exact) = (radiance(&problem), even(&alone(&problem, sigma), sigma, 1).radiance());
+    let (computed, exact) =
+        (radiance(&problem), even(&alone(&problem, sigma), sigma, 1).radiance());
     if exact.high < 1e-290 {
         return None;
     }
-    seen.beyond_rounding(0, found, exact);
+    seen.beyond_rounding(0, computed, exact);
     Some(())
 }
 

@@ -34,8 +34,8 @@ pub fn rows(run: Run) -> Vec<TrialRow> {
     let slab = || (Slab::any(sized(-2.0, 1.48)), between(0.935, 0.98).prop_map(henyey_greenstein));
     rows.extend(run.fill([1, 6], [row], slab, |(slab, phase), seen| finer(slab, *phase, seen)));
     let range = "isotropic, albedo 1e-7 … 0.5 below the critical one, τ = 1e-2 … 10; discrete ordinates, 32 digits";
-    let found = ["slab next to criticality", "moments next to criticality"];
-    let mut of_critical = found.map(|found| TrialRow::stated(found, range)).to_vec();
+    let computed = ["slab next to criticality", "moments next to criticality"];
+    let mut of_critical = computed.map(|computed| TrialRow::stated(computed, range)).to_vec();
     of_critical.push(TrialRow::wrong("infinite slabs, wrong", range));
     rows.extend(run.fill([4, 64], of_critical, Critical::any, |slab, seen| {
         critical(slab, seen);
@@ -65,12 +65,12 @@ parameters! {
 
 impl Slab {
     /// Compares R, T and collisions in each light.
-    fn compare(&self, found: Vec<EnergyBounds>, exact: Vec<[DoubleDouble; 3]>, seen: &mut Seen) {
-        for ((found, exact), light) in found.into_iter().zip(exact).zip(&self.lights) {
+    fn compare(&self, computed: Vec<EnergyBounds>, exact: Vec<[DoubleDouble; 3]>, seen: &mut Seen) {
+        for ((computed, exact), light) in computed.into_iter().zip(exact).zip(&self.lights) {
             seen.at(format_args!("{light:?}"));
-            let found = [found.reflected, found.transmitted, found.score];
-            for (found, exact) in found.into_iter().zip(exact) {
-                seen.stated(0, found, exact);
+            let computed = [computed.reflected, computed.transmitted, computed.score];
+            for (computed, exact) in computed.into_iter().zip(exact) {
+                seen.stated(0, computed, exact);
             }
         }
     }
@@ -112,10 +112,10 @@ fn finer(slab: &Slab, phase: Phase, seen: &mut Seen) -> Option<()> {
     let Slab { depth, albedo, lights } = slab;
     let slice = Kernel { rate: *depth, straight: 0.0, scattered: *albedo, score: 1.0 };
     // Answers of thin and of black slabs have other solvers.
-    let found = seen.found(0, slab::solve(&phase, lights, &[slice], fine))?;
+    let computed = seen.computed(0, slab::solve(&phase, lights, &[slice], fine))?;
     let fine = slab::energies(&phase, lights, &[slice], resolution)?;
     let all = |fine: Energy| [fine.reflected, fine.transmitted, fine.score].map(DoubleDouble::from);
-    slab.compare(found, fine.into_iter().map(all).collect(), seen);
+    slab.compare(computed, fine.into_iter().map(all).collect(), seen);
     Some(())
 }
 
@@ -129,10 +129,10 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
         inside => DoubleDouble::from(inside),
     };
     let phase = Phase::Isotropic(Isotropic);
-    let found = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
-    let found = seen.found(0, found)?;
+    let computed = slab::answers(&phase, lights, Known::exact(*depth), *albedo);
+    let computed = seen.computed(0, computed)?;
     let exact = Ordinates::new(DoubleDouble::from(*depth), near, ORDINATES)?;
-    let all = |(light, found): (&IncidentLight, &EnergyBounds)| {
+    let all = |(light, computed): (&IncidentLight, &EnergyBounds)| {
         let [r, t] = match *light {
             IncidentLight::Collimated(cosine) if *albedo == 0.0 => {
                 [DoubleDouble::default(), (-(DoubleDouble::from(*depth) / cosine)).exp()]
@@ -145,10 +145,10 @@ fn even(slab: &Slab, seen: &mut Seen) -> Option<()> {
         let lost = 1.0 - near;
         // Collisions are what is absorbed over 1 − a, of which a white slab leaves no digits.
         let score = (1.0 - r - t) / lost;
-        [r, t, if lost.high > 1e-9 { score } else { DoubleDouble::from(found.score.value) }]
+        [r, t, if lost.high > 1e-9 { score } else { DoubleDouble::from(computed.score.value) }]
     };
-    let exact = lights.iter().zip(&found).map(all).collect();
-    slab.compare(found, exact, seen);
+    let exact = lights.iter().zip(&computed).map(all).collect();
+    slab.compare(computed, exact, seen);
     Some(())
 }
 
@@ -175,20 +175,22 @@ fn critical(slab: &Critical, seen: &mut Seen) {
     let fine = slab::answers(&phase, lights, Known::exact(depth), albedo);
     let moments = slab::solve(&phase, lights, &[slice(albedo)], Resolution::COARSE);
     if distance > NEAR {
-        for found in [&fine, &moments] {
-            seen.wrong(2, found.is_some() != exact.is_some());
+        for computed in [&fine, &moments] {
+            seen.wrong(2, computed.is_some() != exact.is_some());
         }
     }
-    for (row, found) in [fine, moments].into_iter().enumerate() {
-        let Some((found, exact)) = found.zip(exact.as_ref()) else {
+    for (row, computed) in [fine, moments].into_iter().enumerate() {
+        let Some((computed, exact)) = computed.zip(exact.as_ref()) else {
             seen.skip(row);
             continue;
         };
-        for (found, light) in found.into_iter().zip(lights) {
+        for (computed, light) in computed.into_iter().zip(lights) {
             seen.at(format_args!("{light:?}"));
             let exact = exact.energy(*light);
-            for (found, exact) in [found.reflected, found.transmitted].into_iter().zip(exact) {
-                seen.stated(row, found, exact);
+            for (computed, exact) in
+                [computed.reflected, computed.transmitted].into_iter().zip(exact)
+            {
+                seen.stated(row, computed, exact);
             }
         }
     }

@@ -104,10 +104,11 @@ fn see(seen: &mut Seen, channel: &Channel, raw: [Option<DoubleDouble>; 4]) {
     let is_known = raw.map(|moment| moment.is_some_and(|m| m.high.is_finite()));
     let [second, fourth] =
         central(raw.map(|m| m.unwrap_or(DoubleDouble::from(f64::NAN))), DoubleDouble::from(scale));
-    for (row, needed, found, exact) in [(0, 2, relative[0], second), (1, 4, relative[2], fourth)] {
-        match (is_known[..needed].iter().all(|&known| known), found.is_finite()) {
+    for (row, needed, computed, exact) in [(0, 2, relative[0], second), (1, 4, relative[2], fourth)]
+    {
+        match (is_known[..needed].iter().all(|&known| known), computed.is_finite()) {
             // Of draws that hardly vary there are no digits.
-            (true, true) if exact.high > 1e-9 => seen.central(row, found, error, exact),
+            (true, true) if exact.high > 1e-9 => seen.central(row, computed, error, exact),
             (false, false) => seen.see(row, 0.0),
             _ => seen.skip(row),
         }
@@ -206,14 +207,14 @@ impl Walked<'_> {
                 let shares = |channel| null(channel) / majorant;
                 let all: Vec<DoubleDouble> = channels.map(shares).collect();
                 let size = |x: &DoubleDouble| x.value();
-                let chance = if self.kind == TrackerKind::Average {
+                let probability = if self.kind == TrackerKind::Average {
                     all.iter().copied().sum::<DoubleDouble>() / all.len() as f64
                 } else {
                     let largest = all.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-                    let least = all.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
-                    largest / (largest + 1.0 - least)
+                    let minimum = all.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
+                    largest / (largest + 1.0 - minimum)
                 };
-                let kept = power(all[own], k) / power(chance, k - 1);
+                let kept = power(all[own], k) / power(probability, k - 1);
                 Some((majorant * (kept - 1.0)).exp())
             }
         }
@@ -301,8 +302,8 @@ fn chromatic(case: &Media, seen: &mut Seen) -> Option<()> {
     let flown: Vec<Piecewise> = case.channels.iter().map(flown).collect();
     let meshes: Vec<Mesh> = media.into_iter().map(Mesh::new).collect();
     let joined = meshes.iter().zip(&flown).collect();
-    let found = chromatic::SlabSpectrum::new(&problem, joined, false).independent(&hero);
-    for (channel, &(end, own)) in found.channels.iter().zip(&problem.colours.seen) {
+    let computed = chromatic::SlabSpectrum::new(&problem, joined, false).independent(&hero);
+    for (channel, &(end, own)) in computed.channels.iter().zip(&problem.colours.seen) {
         seen.at(&channel.name);
         let (depth, albedo, _) = case.channels[own];
         let slab =

@@ -82,11 +82,11 @@ impl Run {
             }
             rows
         };
-        let mut found = empty.clone();
+        let mut computed = empty.clone();
         for later in parallel::range(TASKS, task) {
-            found.iter_mut().zip(later).for_each(|(row, later)| row.merge(later));
+            computed.iter_mut().zip(later).for_each(|(row, later)| row.merge(later));
         }
-        for (index, row) in found.iter_mut().enumerate().filter(|(_, row)| !row.is_within()) {
+        for (index, row) in computed.iter_mut().enumerate().filter(|(_, row)| !row.is_within()) {
             let is_broken = |parameters: &S::Value| {
                 let mut rows = empty.clone();
                 try_out(row.trial, parameters, &mut rows);
@@ -96,7 +96,7 @@ impl Run {
                 row.place = format!("{}; shortened: {shortest:?}", row.place);
             }
         }
-        found
+        computed
     }
 }
 
@@ -146,7 +146,7 @@ impl Seen<'_> {
     }
 
     /// Returns an answer of the library; a missing one breaks the bound of a row.
-    pub fn found<T>(&mut self, row: usize, answer: Option<T>) -> Option<T> {
+    pub fn computed<T>(&mut self, row: usize, answer: Option<T>) -> Option<T> {
         if answer.is_none() {
             self.see(row, f64::NAN);
         }
@@ -160,48 +160,51 @@ impl Seen<'_> {
     }
 
     /// Adds a value with its stated error; a value that rounds to the truth has none.
-    pub fn stated(&mut self, row: usize, found: Known, exact: DoubleDouble) {
-        self.see(row, of_stated(found, exact));
+    pub fn stated(&mut self, row: usize, computed: Known, exact: DoubleDouble) {
+        self.see(row, of_stated(computed, exact));
     }
 
     /// Adds a value with its stated error, beyond half a unit in the last place of the truth.
-    pub fn beyond_rounding(&mut self, row: usize, found: Known, exact: DoubleDouble) {
+    pub fn beyond_rounding(&mut self, row: usize, computed: Known, exact: DoubleDouble) {
         let slack = 0.5 * f64::EPSILON * exact.high.abs();
-        self.see(row, over((off(found.value, exact) - slack).max(0.0), found.error));
+        self.see(row, over((off(computed.value, exact) - slack).max(0.0), computed.error));
     }
 
     /// Adds a value beside an exact one, relative.
-    pub fn relative(&mut self, row: usize, found: f64, exact: DoubleDouble) {
-        self.see(row, exact.relative_error(found));
+    pub fn relative(&mut self, row: usize, computed: f64, exact: DoubleDouble) {
+        self.see(row, exact.relative_error(computed));
     }
 
     /// Adds variance and fourth moment to two rows, given raw moments up to the first infinite one; skipped where
     /// theory has none.
-    pub fn moments(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[DoubleDouble]) {
-        self.compare(rows, found, raw, |seen, row| seen.see(row, f64::INFINITY));
+    pub fn moments(&mut self, rows: [usize; 2], computed: Option<Moments>, raw: &[DoubleDouble]) {
+        self.compare(rows, computed, raw, |seen, row| seen.see(row, f64::INFINITY));
     }
 
     /// Adds variance and fourth moment likewise where theory resolves them: one of both infinite is skipped.
-    pub fn resolved(&mut self, rows: [usize; 2], found: Option<Moments>, raw: &[DoubleDouble]) {
-        self.compare(rows, found, raw, Self::skip);
+    pub fn resolved(&mut self, rows: [usize; 2], computed: Option<Moments>, raw: &[DoubleDouble]) {
+        self.compare(rows, computed, raw, Self::skip);
     }
 
     fn compare(
         &mut self,
         rows: [usize; 2],
-        found: Option<Moments>,
+        computed: Option<Moments>,
         raw: &[DoubleDouble],
         differ: impl Fn(&mut Self, usize),
     ) {
-        let Some(Moments { scale, relative, error, .. }) = found else {
+        let Some(Moments { scale, relative, error, .. }) = computed else {
             return rows.into_iter().for_each(|row| self.skip(row));
         };
         let raw =
             std::array::from_fn(|k| raw.get(k).copied().unwrap_or(DoubleDouble::from(f64::NAN)));
         let exact = central(raw, DoubleDouble::from(scale));
-        for ((row, found), exact) in rows.into_iter().zip([relative[0], relative[2]]).zip(exact) {
-            match (found == f64::INFINITY, exact.high.is_finite()) {
-                (false, true) => self.stated(row, Known::new(found, found.abs() * error), exact),
+        for ((row, computed), exact) in rows.into_iter().zip([relative[0], relative[2]]).zip(exact)
+        {
+            match (computed == f64::INFINITY, exact.high.is_finite()) {
+                (false, true) => {
+                    self.stated(row, Known::new(computed, computed.abs() * error), exact);
+                }
                 (true, false) => self.see(row, 0.0),
                 _ => differ(self, row),
             }
@@ -209,9 +212,9 @@ impl Seen<'_> {
     }
 
     /// Adds a central moment with a relative error; skipped where theory does not resolve it.
-    pub fn central(&mut self, row: usize, found: f64, error: f64, exact: DoubleDouble) {
-        if found.is_finite() {
-            self.stated(row, Known::new(found, found.abs() * error), exact);
+    pub fn central(&mut self, row: usize, computed: f64, error: f64, exact: DoubleDouble) {
+        if computed.is_finite() {
+            self.stated(row, Known::new(computed, computed.abs() * error), exact);
         } else {
             self.skip(row);
         }
@@ -219,8 +222,8 @@ impl Seen<'_> {
 }
 
 /// Returns the absolute error of a value.
-pub fn off(found: f64, exact: DoubleDouble) -> f64 {
-    (found - exact).abs().value()
+pub fn off(computed: f64, exact: DoubleDouble) -> f64 {
+    (computed - exact).abs().value()
 }
 
 /// Returns an error in units of what is allowed; an exact value is allowed none.
@@ -229,9 +232,9 @@ pub fn over(off: f64, allowed: f64) -> f64 {
 }
 
 /// Returns the error of a value in units of its stated error; a value that rounds to the truth has none.
-pub fn of_stated(found: Known, exact: DoubleDouble) -> f64 {
-    let off = off(found.value, exact);
-    if off <= 0.5 * f64::EPSILON * exact.high.abs() { 0.0 } else { off / found.error }
+pub fn of_stated(computed: Known, exact: DoubleDouble) -> f64 {
+    let off = off(computed.value, exact);
+    if off <= 0.5 * f64::EPSILON * exact.high.abs() { 0.0 } else { off / computed.error }
 }
 
 /// Returns variance and fourth central moment of raw moments, in a unit.

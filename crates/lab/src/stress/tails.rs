@@ -186,14 +186,14 @@ fn binomial_ends(&Successes { trials, share, missing }: &Successes, seen: &mut S
 /// Probabilities by recurrence from the mode against `e^{−m} mⁿ/n!`.
 fn poisson(&mean: &f64, seen: &mut Seen) {
     let (mut ln_mass, ln_mean) = (-DoubleDouble::from(mean), DoubleDouble::from(mean).ln());
-    for (n, &found) in CountDistribution::poisson(mean).pmf.iter().enumerate() {
+    for (n, &computed) in CountDistribution::poisson(mean).pmf.iter().enumerate() {
         if n > 0 {
             ln_mass = ln_mass + ln_mean - DoubleDouble::from(n as f64).ln();
         }
         let exact = ln_mass.exp();
         if exact.high > 1e-18 {
             seen.at(format_args!("P({n})"));
-            seen.relative(0, found, exact);
+            seen.relative(0, computed, exact);
         }
     }
 }

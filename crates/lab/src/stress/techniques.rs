@@ -76,8 +76,9 @@ impl Estimator<'_> {
         let scene = &RayScene::new(problem, camera, self.tracking);
         let of = |density: &dyn Fn(&RayNode) -> f64, blur: &dyn Fn(&RayNode) -> f64| {
             let gain = |node: &RayNode| node.extinction * node.source / density(node);
-            let (found, weighted) = (None, None);
-            let technique = single::ScoredDensity { density, gain: &gain, blur, found, weighted };
+            let (by_collisions, weighted) = (None, None);
+            let technique =
+                single::ScoredDensity { density, gain: &gain, blur, by_collisions, weighted };
             TechniqueMoments::of(scene, &technique, Vec::new())
         };
         let by_angle = |node: &RayNode| problem.equiangular_density_beyond(node.along);
@@ -88,8 +89,8 @@ impl Estimator<'_> {
             PointTechnique::ByAngle(_) => of(&by_angle, &|_| DENSITY),
             PointTechnique::ByDepth(_) => {
                 let rate = self.rate();
-                let found = -(-rate * support.length()).exp_m1();
-                let density = |node: &RayNode| rate * (-rate * node.s).exp() / found;
+                let computed = -(-rate * support.length()).exp_m1();
+                let density = |node: &RayNode| rate * (-rate * node.s).exp() / computed;
                 of(&density, &|node| DENSITY + f64::EPSILON * rate * node.s)
             }
             PointTechnique::Delta => {

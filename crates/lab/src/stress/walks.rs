@@ -95,7 +95,7 @@ parameters! {
     /// Straight pieces of r, isotropic scattering.
     Graded {
         albedo: f64 = albedo(),
-        most: f64 = between(0.2, 1.4),
+        maximum: f64 = between(0.2, 1.4),
         is_weighted: bool = proptest::bool::ANY,
         collisions: f64 = sized(-2.0, 0.7),
         values: Vec<f64> = vec(between(0.0, 1.0), 2..=4),
@@ -128,10 +128,10 @@ fn below_one(albedo: DoubleDouble) -> DoubleDouble {
 }
 
 /// A rule that exists for ratios up to one.
-fn rule(kind: usize, most: f64) -> ParticleRule {
+fn rule(kind: usize, maximum: f64) -> ParticleRule {
     use ParticleRule::{NonTerminating, Terminating, Weighted};
     let rules = [NonTerminating, Weighted, Terminating];
-    rules[kind % if most <= 1.0 { 3 } else { 2 }]
+    rules[kind % if maximum <= 1.0 { 3 } else { 2 }]
 }
 
 /// R and T in all lights.
@@ -155,7 +155,7 @@ fn compare(seen: &mut Seen, walk: &SlabWalk, lights: &[IncidentLight], exact: &E
     let truths: Vec<EnergyBounds> =
         first.map_or_else(Vec::new, |all| all.iter().map(answer).collect());
     let all = walk.predict_all(lights, &truths);
-    for (i, (light, found)) in lights.iter().zip(all).enumerate() {
+    for (i, (light, computed)) in lights.iter().zip(all).enumerate() {
         seen.at(format_args!("{light:?}"));
         let is_faint = truths[i].reflected.value.min(truths[i].transmitted.value) < FAINT;
         if is_faint {
@@ -163,12 +163,12 @@ fn compare(seen: &mut Seen, walk: &SlabWalk, lights: &[IncidentLight], exact: &E
             seen.skip(1);
         }
         if let Some(collisions) = &exact.collisions {
-            match found.lookups.zip(collisions.get(i)).filter(|_| !is_faint) {
-                Some((law, &exact)) => seen.stated(2, lookups(&law), exact),
+            match computed.lookups.zip(collisions.get(i)).filter(|_| !is_faint) {
+                Some((distribution, &exact)) => seen.stated(2, lookups(&distribution), exact),
                 None => seen.skip(2),
             }
         }
-        for (channel, side) in found.channels.iter().zip(0..).filter(|_| !is_faint) {
+        for (channel, side) in computed.channels.iter().zip(0..).filter(|_| !is_faint) {
             let raw: Vec<DoubleDouble> = exact.leaving.iter().map(|all| all[i][side]).collect();
             seen.at(format_args!("{}, {light:?}", channel.name));
             // Next to where moments become infinite either may be right.
@@ -182,7 +182,7 @@ fn walk(
     phase: Phase,
     (albedo, rule): (f64, ParticleRule),
     pieces: Pieces,
-    most: f64,
+    maximum: f64,
     depth: f64,
 ) -> SlabWalk {
     let incidence = Incidence { light: IncidentLight::Diffuse, phase };
@@ -191,7 +191,7 @@ fn walk(
         albedo,
         rule,
         pieces,
-        largest_ratio: most,
+        largest_ratio: maximum,
         depth,
         with_distributions: false,
     }
@@ -255,11 +255,14 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
     let (rule, flown) = (rule(kind, ratio), depth / ratio);
     let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
     let walk = walk(Phase::Isotropic(Isotropic), (1.0 - absorbed, rule), pieces, ratio, depth);
-    let found =
-        seen.found(0, SlabWalk { with_distributions: true, ..walk.clone() }.lookups(lights))?;
+    let computed =
+        seen.computed(0, SlabWalk { with_distributions: true, ..walk.clone() }.lookups(lights))?;
     let laws: Vec<CountDistribution> =
-        found.into_iter().map(CountDistribution::of_factorial).collect();
-    let scale = laws.iter().map(|law| 1.0 + law.variance / law.mean).fold(0.0, f64::max);
+        computed.into_iter().map(CountDistribution::of_factorial).collect();
+    let scale = laws
+        .iter()
+        .map(|distribution| 1.0 + distribution.variance / distribution.mean)
+        .fold(0.0, f64::max);
     let step = DoubleDouble::from(STEP / scale);
     let [q, s] = moments_of(rule, DoubleDouble::from(ratio), walk.albedo, 0);
     let generating = |place: i32| -> Option<Vec<DoubleDouble>> {
@@ -279,7 +282,7 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
     };
     let places = -4..=4;
     let values: Vec<Vec<DoubleDouble>> = places.clone().map(generating).collect::<Option<_>>()?;
-    for (i, (light, law)) in lights.iter().zip(laws).enumerate() {
+    for (i, (light, distribution)) in lights.iter().zip(laws).enumerate() {
         let row = |(place, values): (i32, &Vec<DoubleDouble>)| {
             let powers = (0..9).map(|k| DoubleDouble::from(f64::from(place).powi(k)));
             powers.chain([values[i]]).collect()
@@ -291,12 +294,18 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
             terms[usize::from(k)] * scale
         });
         let raw = [f1, f2 + f1, f3 + 3.0 * f2 + f1, f4 + 6.0 * f3 + 7.0 * f2 + f1];
-        let fourth = law.kurtosis * law.variance * law.variance;
+        let fourth = distribution.kurtosis * distribution.variance * distribution.variance;
         seen.at(format_args!("{light:?}"));
-        for (row, (found, exact)) in
-            [law.variance, fourth].into_iter().zip(central(raw, DoubleDouble::ONE)).enumerate()
+        for (row, (computed, exact)) in [distribution.variance, fourth]
+            .into_iter()
+            .zip(central(raw, DoubleDouble::ONE))
+            .enumerate()
         {
-            seen.stated(row, Known::estimated(found, found * law.moments_error), exact);
+            seen.stated(
+                row,
+                Known::estimated(computed, computed * distribution.moments_error),
+                exact,
+            );
         }
     }
     Some(())
@@ -305,11 +314,11 @@ fn white(parameters: &White, seen: &mut Seen) -> Option<()> {
 /// Layers of other ratios and other phase functions: the same slabs with more directions.
 fn finer(parameters: &Layers, seen: &mut Seen) {
     let &Layers { depth, albedo, ref ratios, kind, phase, ref lights } = parameters;
-    let most = ratios.iter().copied().fold(0.0, f64::max);
-    let rule = rule(kind, most);
+    let maximum = ratios.iter().copied().fold(0.0, f64::max);
+    let rule = rule(kind, maximum);
     let thin = depth / ratios.len() as f64;
     let cut: Vec<Piece> = ratios.iter().map(|&r| Piece::of(thin / r, r)).collect();
-    let walk = walk(phase, (albedo, rule), Pieces::Exact(cut.clone()), most, depth);
+    let walk = walk(phase, (albedo, rule), Pieces::Exact(cut.clone()), maximum, depth);
     let of_power = |k: u32| slab::energies(&phase, lights, &slices(&cut, &walk, k), FINER);
     let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(DoubleDouble::from);
     let score = |energy: &Energy| DoubleDouble::from(energy.score);
@@ -376,13 +385,13 @@ fn alike() -> impl Strategy<Value = Vec<IncidentLight>> {
 
 /// r that varies: Peierls' equation.
 fn graded(parameters: &Graded, seen: &mut Seen) {
-    let &Graded { albedo, most, is_weighted, collisions, ref values, largest, ref lights } =
+    let &Graded { albedo, maximum, is_weighted, collisions, ref values, largest, ref lights } =
         parameters;
     // Other walks know σ_t alone where r is nowhere above 1, as on one layer.
-    let rule = rule(usize::from(is_weighted && most > 1.0), f64::INFINITY);
+    let rule = rule(usize::from(is_weighted && maximum > 1.0), f64::INFINITY);
     let cuts = values.len() - 1;
     let knots: Vec<f64> = (0..=cuts).map(|i| i as f64 / cuts as f64).collect();
-    let sampling = collisions / most;
+    let sampling = collisions / maximum;
     let mut values: Vec<f64> = values.iter().map(|value| collisions * value).collect();
     values[largest % (cuts + 1)] = collisions;
     let mesh = Mesh::new(fields::pieces(&knots, &values));
@@ -414,6 +423,6 @@ fn graded(parameters: &Graded, seen: &mut Seen) {
     let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(wide).collect());
     let leaving = truth.into_iter().chain(higher).collect();
     let pieces = Pieces::new(&mesh, &flown, &rule.kinks(albedo), lights);
-    let walk = walk(Phase::Isotropic(Isotropic), (albedo, rule), pieces, most, depth);
+    let walk = walk(Phase::Isotropic(Isotropic), (albedo, rule), pieces, maximum, depth);
     compare(seen, &walk, lights, &Exact { leaving, collisions: None });
 }

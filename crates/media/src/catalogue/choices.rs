@@ -28,9 +28,9 @@ pub type Explanation<'a> = &'a dyn Fn(&str) -> Option<[String; 2]>;
 impl<'a> Settings<'a> {
     /// A required word, one of `words`.
     pub fn word(&self, key: &'static str, words: &[&'static str]) -> Option<&'static str> {
-        let wanted = format!("one of {}", quoted(words));
-        let entry = self.required(key, &wanted)?;
-        self.word_of(entry, words, &wanted)
+        let expected = format!("one of {}", quoted(words));
+        let entry = self.required(key, &expected)?;
+        self.word_of(entry, words, &expected)
     }
 
     /// One of `words`, or `default` where the key is absent.
@@ -40,8 +40,8 @@ impl<'a> Settings<'a> {
         words: &[&'static str],
         default: &'static str,
     ) -> Option<&'static str> {
-        let wanted = format!("one of {}", quoted(words));
-        self.entry(key).map_or(Some(default), |entry| self.word_of(entry, words, &wanted))
+        let expected = format!("one of {}", quoted(words));
+        self.entry(key).map_or(Some(default), |entry| self.word_of(entry, words, &expected))
     }
 
     /// The value of one of some words; that of the first where the key is absent.
@@ -51,20 +51,25 @@ impl<'a> Settings<'a> {
         values.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
     }
 
-    fn word_of(&self, entry: &Entry, words: &[&'static str], wanted: &str) -> Option<&'static str> {
+    fn word_of(
+        &self,
+        entry: &Entry,
+        words: &[&'static str],
+        expected: &str,
+    ) -> Option<&'static str> {
         let (text, span, settings) = match &entry.node.value {
             Value::Text(text) => (text, &entry.node.span, None),
             Value::Table(table) if table.len() == 1 => {
                 (&table[0].key, &table[0].key_span, Some(&table[0].node))
             }
             _ => {
-                self.wrong(entry, wanted);
+                self.wrong(entry, expected);
                 return None;
             }
         };
         let Some(word) = words.iter().find(|word| *word == text).copied() else {
             let message = format!("`{}` is \"{}\"", entry.key, brief(text));
-            self.fault_at(span.clone(), &entry.key, message, suggestion(text, words, wanted));
+            self.fault_at(span.clone(), &entry.key, message, suggestion(text, words, expected));
             return None;
         };
         let takes_none = |value: &Value| matches!(value, Value::Table(table) if table.is_empty());
@@ -78,8 +83,8 @@ impl<'a> Settings<'a> {
     }
 
     /// A required table that names a page, or the page's name alone.
-    pub fn naming(&self, key: &'static str, wanted: &str) -> Option<Settings<'a>> {
-        let entry = self.required(key, wanted)?;
+    pub fn naming(&self, key: &'static str, expected: &str) -> Option<Settings<'a>> {
+        let entry = self.required(key, expected)?;
         match &entry.node.value {
             Value::Table(_) => self.open(entry),
             Value::Text(name) => {
@@ -87,7 +92,7 @@ impl<'a> Settings<'a> {
                 Some(self.written(Form::Name(name), span, path))
             }
             _ => {
-                self.wrong(entry, wanted);
+                self.wrong(entry, expected);
                 None
             }
         }
@@ -189,20 +194,20 @@ impl<'a> Settings<'a> {
         names: &[String],
         explain: Explanation,
     ) -> Option<(usize, Settings<'a>)> {
-        let wanted = format!("one of {}", quoted(names));
-        self.naming(key, &wanted)?.choice_explained(names, explain)
+        let expected = format!("one of {}", quoted(names));
+        self.naming(key, &expected)?.choice_explained(names, explain)
     }
 
     /// Records that a key is missing, with its cure.
-    pub(super) fn missing(&self, key: &str, wanted: &str) {
+    pub(super) fn missing(&self, key: &str, expected: &str) {
         let message = format!("`{key}` is missing");
         match self.form {
             Form::Table | Form::Name(_) => {
-                self.fault_at(self.span.clone(), "", message, format!("add `{key}`, {wanted}"));
+                self.fault_at(self.span.clone(), "", message, format!("add `{key}`, {expected}"));
             }
             Form::Named => {
                 let full = self.in_full(key);
-                let help = format!("the name alone is not enough: write `{full}`, {wanted}");
+                let help = format!("the name alone is not enough: write `{full}`, {expected}");
                 self.fault_at(self.span.clone(), "", message, help);
             }
             Form::Value(index) => {
@@ -210,7 +215,7 @@ impl<'a> Settings<'a> {
                 if let Some(fault) =
                     faults.get_mut(index).filter(|fault| fault.help.starts_with("it takes"))
                 {
-                    fault.help = format!("write `{}`, {wanted}", self.in_full(key));
+                    fault.help = format!("write `{}`, {expected}", self.in_full(key));
                 }
             }
         }

@@ -31,6 +31,6 @@ pub fn read<T, const N: usize>(
     read: impl FnOnce(&Settings) -> T,
 ) -> (T, Vec<String>) {
     let (table, faults) = (entries(settings), RefCell::default());
-    let found = read(&Settings::new(&table, Path::new("."), &faults));
-    (found, faults.into_inner().into_iter().map(|fault| fault.message).collect())
+    let actual = read(&Settings::new(&table, Path::new("."), &faults));
+    (actual, faults.into_inner().into_iter().map(|fault| fault.message).collect())
 }

@@ -12,14 +12,14 @@ const TOLD: usize = 5;
 const TRIPLE: &str = "a list of three finite numbers [x, y, z]";
 
 impl Settings<'_> {
-    /// A required list of numbers, at least `least` of them.
-    pub fn numbers(&self, key: &'static str, domain: Domain, least: usize) -> Option<Vec<f64>> {
-        let wanted = format!("a list of at least {least}, each {}", domain.words());
-        let entry = self.required(key, &wanted)?;
-        self.list_of(entry, domain, &wanted).filter(|list| {
-            let enough = list.len() >= least;
+    /// A required list of numbers, at least `minimum` of them.
+    pub fn numbers(&self, key: &'static str, domain: Domain, minimum: usize) -> Option<Vec<f64>> {
+        let expected = format!("a list of at least {minimum}, each {}", domain.words());
+        let entry = self.required(key, &expected)?;
+        self.list_of(entry, domain, &expected).filter(|list| {
+            let enough = list.len() >= minimum;
             if !enough {
-                self.wrong(entry, &wanted);
+                self.wrong(entry, &expected);
             }
             enough
         })
@@ -40,22 +40,22 @@ impl Settings<'_> {
     /// Three required integers in a range.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
     pub fn counts(&self, key: &'static str, range: RangeInclusive<u64>) -> Option<[usize; 3]> {
-        let wanted = format!("a list of three, each {}", whole(&range));
-        let entry = self.required(key, &wanted)?;
-        let triple = self.triple_of(entry, Domain::NonNegative, &wanted)?;
+        let expected = format!("a list of three, each {}", whole(&range));
+        let entry = self.required(key, &expected)?;
+        let triple = self.triple_of(entry, Domain::NonNegative, &expected)?;
         if triple.iter().all(|x| x.fract() == 0.0 && range.contains(&(*x as u64))) {
             return Some(triple.map(|x| x as usize));
         }
-        self.wrong(entry, &wanted);
+        self.wrong(entry, &expected);
         None
     }
 
     /// A required list of points or vectors `[[x, y, z], …]`.
     pub fn triples(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
-        let wanted = "a list of triples of finite numbers [[x, y, z], …]";
-        let entry = self.required(key, wanted)?;
+        let expected = "a list of triples of finite numbers [[x, y, z], …]";
+        let entry = self.required(key, expected)?;
         let Value::Array(items) = &entry.node.value else {
-            self.wrong(entry, wanted);
+            self.wrong(entry, expected);
             return None;
         };
         let triples = items.iter().map(|node| {
@@ -66,18 +66,18 @@ impl Settings<'_> {
         triples.collect::<Vec<_>>().into_iter().collect()
     }
 
-    fn triple_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<[f64; 3]> {
-        let list = self.list_of(entry, domain, wanted)?;
+    fn triple_of(&self, entry: &Entry, domain: Domain, expected: &str) -> Option<[f64; 3]> {
+        let list = self.list_of(entry, domain, expected)?;
         let triple = <[f64; 3]>::try_from(list);
         if triple.is_err() {
-            self.wrong(entry, wanted);
+            self.wrong(entry, expected);
         }
         triple.ok()
     }
 
-    fn list_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<Vec<f64>> {
+    fn list_of(&self, entry: &Entry, domain: Domain, expected: &str) -> Option<Vec<f64>> {
         let Value::Array(items) = &entry.node.value else {
-            self.wrong(entry, wanted);
+            self.wrong(entry, expected);
             return None;
         };
         let mut list = Vec::with_capacity(items.len());
@@ -90,11 +90,11 @@ impl Settings<'_> {
         });
         let help = format!("each entry is {}", domain.words());
         for item in wrong.by_ref().take(TOLD) {
-            let found = match item.value {
+            let actual = match item.value {
                 Value::Number(x) => number(x),
                 ref other => other.kind().to_owned(),
             };
-            let message = format!("{found} stands in `{}`", entry.key);
+            let message = format!("{actual} stands in `{}`", entry.key);
             self.fault_at(item.span.clone(), &entry.key, message, help.as_str());
         }
         if let Some(next) = wrong.next() {

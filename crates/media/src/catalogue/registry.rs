@@ -63,9 +63,9 @@ impl<T> Registry<T> {
         settings: &Settings,
         read: impl FnOnce(&T, &Settings) -> Option<R>,
     ) -> Option<R> {
-        let found = read(&self.values[index], settings);
+        let actual = read(&self.values[index], settings);
         settings.close();
-        found
+        actual
     }
 }
 

@@ -30,17 +30,17 @@ pub struct Settings<'a> {
     pub folder: &'a Path,
     pub(super) faults: &'a RefCell<Vec<Fault>>,
     own_pages: &'a OwnPages,
-    asked: RefCell<Vec<&'static str>>,
+    requested: RefCell<Vec<&'static str>>,
     pub(super) form: Form<'a>,
 }
 
 impl<'a> Settings<'a> {
     /// Reads the top-level table of a file in `folder`; mistakes go to `faults`.
     pub fn new(root: &'a [Entry], folder: &'a Path, faults: &'a RefCell<Vec<Fault>>) -> Self {
-        let (asked, form) = (RefCell::default(), Form::Table);
+        let (requested, form) = (RefCell::default(), Form::Table);
         let own_pages = &own_pages::NONE;
         let path = String::new();
-        Self { table: root, span: 0..0, path, folder, faults, own_pages, asked, form }
+        Self { table: root, span: 0..0, path, folder, faults, own_pages, requested, form }
     }
 
     /// Settings with pages of the program's own.
@@ -56,9 +56,9 @@ impl<'a> Settings<'a> {
 
     /// The entry of a key, if the file has it.
     pub fn entry(&self, key: &'static str) -> Option<&'a Entry> {
-        let mut asked = self.asked.borrow_mut();
-        if !asked.contains(&key) {
-            asked.push(key);
+        let mut requested = self.requested.borrow_mut();
+        if !requested.contains(&key) {
+            requested.push(key);
         }
         self.table.iter().find(|entry| entry.key == key)
     }
@@ -118,19 +118,19 @@ impl<'a> Settings<'a> {
         }
     }
 
-    pub(super) fn wrong(&self, entry: &Entry, wanted: &str) {
+    pub(super) fn wrong(&self, entry: &Entry, expected: &str) {
         let message = match &entry.node.value {
             Value::Number(x) => format!("`{}` is {}", entry.key, number(*x)),
             other => format!("`{}` is {}", entry.key, other.kind()),
         };
-        let help = format!("it takes {wanted}");
+        let help = format!("it takes {expected}");
         self.fault_at(entry.node.span.clone(), &entry.key, message, help);
     }
 
-    pub(super) fn required(&self, key: &'static str, wanted: &str) -> Option<&'a Entry> {
+    pub(super) fn required(&self, key: &'static str, expected: &str) -> Option<&'a Entry> {
         let entry = self.entry(key);
         if entry.is_none() {
-            self.missing(key, wanted);
+            self.missing(key, expected);
         }
         entry
     }
@@ -230,19 +230,19 @@ impl<'a> Settings<'a> {
         span: Range<usize>,
         path: String,
     ) -> Settings<'a> {
-        let (asked, form) = (RefCell::default(), Form::Table);
-        Settings { table, span, path, asked, form, ..*self }
+        let (requested, form) = (RefCell::default(), Form::Table);
+        Settings { table, span, path, requested, form, ..*self }
     }
 
     /// Reports every key that was not read.
     pub fn close(&self) {
-        let asked = self.asked.borrow();
-        for entry in self.table.iter().filter(|entry| !asked.contains(&entry.key.as_str())) {
+        let requested = self.requested.borrow();
+        for entry in self.table.iter().filter(|entry| !requested.contains(&entry.key.as_str())) {
             let message = format!("`{}` is not known here", entry.key);
-            let help = if asked.is_empty() {
+            let help = if requested.is_empty() {
                 "this table takes no keys: write {}".to_owned()
             } else {
-                meant(&entry.key, &asked, &format!("the keys are {}", quoted(&asked)))
+                meant(&entry.key, &requested, &format!("the keys are {}", quoted(&requested)))
             };
             self.fault_at(entry.key_span.clone(), "", message, help);
         }

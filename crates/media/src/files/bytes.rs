@@ -41,9 +41,9 @@ impl<'a> Bytes<'a> {
     /// Reads `count` bytes.
     pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Unreadable> {
         match self.rest().get(..count) {
-            Some(found) => {
+            Some(actual) => {
                 self.at += count;
-                Ok(found)
+                Ok(actual)
             }
             None => damaged(format!("it ends within the {count} bytes from byte {} on", self.at)),
         }

@@ -26,8 +26,8 @@ pub struct Header {
 impl Header {
     /// Number of elements, if their bytes can be counted, also with axes of length 0.
     pub fn count(&self) -> Option<u64> {
-        let most = |bytes: u64, &size: &u64| bytes.checked_mul(size.max(1));
-        self.shape.iter().try_fold(16, most).map(|_| self.shape.iter().product())
+        let maximum = |bytes: u64, &size: &u64| bytes.checked_mul(size.max(1));
+        self.shape.iter().try_fold(16, maximum).map(|_| self.shape.iter().product())
     }
 
     /// The shape as Python writes it.
@@ -155,11 +155,11 @@ mod tests {
         let whole = header("'<f4'", "False", "(2, 3)");
         let file = [whole.clone(), vec![7; 24]].concat();
         let mut source = &file[..];
-        let found = bytes(&mut source).expect("a slice has no errors");
-        assert_eq!((&found, source.len()), (&whole, 24));
-        let read = parse(&found).expect("a header");
+        let actual = bytes(&mut source).expect("a slice has no errors");
+        assert_eq!((&actual, source.len()), (&whole, 24));
+        let read = parse(&actual).expect("a header");
         assert_eq!(read, Header { kind: "<f4".into(), fortran_order: false, shape: vec![2, 3] });
-        assert!(parse(&found[..30]).is_err(), "cut");
+        assert!(parse(&actual[..30]).is_err(), "cut");
     }
 
     #[test]

@@ -57,9 +57,9 @@ pub fn read(bytes: &[u8]) -> Result<Pixels, String> {
     let values = bytes.get(at..).unwrap_or_default();
     let count = rows.checked_mul(columns).and_then(|pixels| pixels.checked_mul(4 * channels));
     if Some(values.len()) != count {
-        let found = values.len();
+        let actual = values.len();
         return Err(format!(
-            "{found} bytes follow its header, not 4 for each of {channels} × {columns} × {rows} values"
+            "{actual} bytes follow its header, not 4 for each of {channels} × {columns} × {rows} values"
         ));
     }
     let word = NumberType::of_width(4, scale > 0.0);

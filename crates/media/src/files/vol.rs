@@ -101,9 +101,9 @@ impl<'a> Vol<'a> {
         let samples = header.rest();
         let width = encoding.number().map_or(0, NumberType::width) as u64;
         let mut factors = size.into_iter().chain([channels]);
-        let wanted = factors.try_fold(width, u64::checked_mul);
-        if wanted.is_none_or(|wanted| wanted != samples.len() as u64) {
-            let than = if wanted.is_none_or(|wanted| wanted > samples.len() as u64) {
+        let expected = factors.try_fold(width, u64::checked_mul);
+        if expected.is_none_or(|expected| expected != samples.len() as u64) {
+            let than = if expected.is_none_or(|expected| expected > samples.len() as u64) {
                 "shorter"
             } else {
                 "longer"

@@ -122,8 +122,8 @@ mod tests {
     #[test]
     fn a_mean_cosine_of_one_is_refused() {
         for g in [1.0, -1.0, 1.5] {
-            let found = read([("g", Value::Number(g))], HenyeyGreenstein::read);
-            assert_eq!(found, (None, vec![format!("`g` is {g}")]));
+            let actual = read([("g", Value::Number(g))], HenyeyGreenstein::read);
+            assert_eq!(actual, (None, vec![format!("`g` is {g}")]));
         }
     }
 }

@@ -153,9 +153,9 @@ mod tests {
     fn moments_are_those_of_the_values() {
         for phase in all() {
             for order in 0..12 {
-                let found = integral(phase, 1.0, |x| legendre(x).nth(order).unwrap_or_default());
+                let actual = integral(phase, 1.0, |x| legendre(x).nth(order).unwrap_or_default());
                 let stated = phase.moment(order);
-                assert!((found - stated).abs() < 1e-12, "{} χ_{order}: {found}", phase.label());
+                assert!((actual - stated).abs() < 1e-12, "{} χ_{order}: {actual}", phase.label());
             }
         }
     }

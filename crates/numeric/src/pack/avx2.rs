@@ -118,8 +118,8 @@ halves! {
         _mm256_or_pd(x, _mm256_castsi256_pd(_mm256_set1_epi64x(bits.cast_signed())))
     }
     fn are_bits(words: Words; bits: [u64; 2]) -> Bools {
-        let found = _mm256_and_si256(words, _mm256_set1_epi64x(bits[0].cast_signed()));
-        _mm256_castsi256_pd(_mm256_cmpeq_epi64(found, _mm256_set1_epi64x(bits[1].cast_signed())))
+        let result = _mm256_and_si256(words, _mm256_set1_epi64x(bits[0].cast_signed()));
+        _mm256_castsi256_pd(_mm256_cmpeq_epi64(result, _mm256_set1_epi64x(bits[1].cast_signed())))
     }
     fn negate_where(x: Pack, words: Words; bit: u32) -> Pack {
         let shifted = _mm256_sll_epi64(words, count(63 - bit));

@@ -111,8 +111,8 @@ whole! {
         _mm512_min_epu32(integer(x), _mm512_set1_epi32(last.cast_signed()))
     }
     fn are_bits(words: Words; bits: [u64; 2]) -> Bools {
-        let found = _mm512_and_si512(words, _mm512_set1_epi64(bits[0].cast_signed()));
-        _mm512_cmpeq_epi64_mask(found, _mm512_set1_epi64(bits[1].cast_signed()))
+        let result = _mm512_and_si512(words, _mm512_set1_epi64(bits[0].cast_signed()));
+        _mm512_cmpeq_epi64_mask(result, _mm512_set1_epi64(bits[1].cast_signed()))
     }
     fn negate_where(x: Pack, words: Words; bit: u32) -> Pack {
         let shifted = _mm512_sll_epi64(words, count(63 - bit));

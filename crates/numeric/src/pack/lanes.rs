@@ -267,8 +267,8 @@ macro_rules! lanes {
             }
 
             #[inline(always)]
-            fn where_bits(words: Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-                let which = are_bits(words.simd, words, [bits, wanted]);
+            fn where_bits(words: Words, bits: u64, expected: u64, yes: Self, no: Self) -> Self {
+                let which = are_bits(words.simd, words, [bits, expected]);
                 select(words.simd, which, yes, no)
             }
 

@@ -260,8 +260,8 @@ impl Lane for Pack {
     }
 
     #[inline(always)]
-    fn where_bits(words: Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-        (words & bits).simd_eq(wanted).select(yes, no)
+    fn where_bits(words: Words, bits: u64, expected: u64, yes: Self, no: Self) -> Self {
+        (words & bits).simd_eq(expected).select(yes, no)
     }
 
     #[inline(always)]

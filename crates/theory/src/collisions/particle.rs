@@ -246,8 +246,8 @@ mod tests {
     }
 
     fn holds(rule: ParticleRule, ratio: f64, albedo: f64) -> bool {
-        let [least, most] = rule.limits(albedo);
-        (least..=most).contains(&ratio)
+        let [minimum, maximum] = rule.limits(albedo);
+        (minimum..=maximum).contains(&ratio)
     }
 
     #[test]
@@ -258,12 +258,12 @@ mod tests {
                     let probabilities = rule.probabilities(r, albedo);
                     let context = format!("{rule:?} at r = {r}, a = {albedo}");
                     let means = [1.0 - r, albedo * r];
-                    let found = [
+                    let result = [
                         probabilities.transmit * probabilities.transmit_weight,
                         probabilities.scatter * probabilities.scatter_weight,
                     ];
-                    for (found, mean) in found.into_iter().zip(means) {
-                        assert!((found - mean).abs() < 1e-14, "{context}");
+                    for (result, mean) in result.into_iter().zip(means) {
+                        assert!((result - mean).abs() < 1e-14, "{context}");
                     }
                     assert!(
                         probabilities.transmit >= 0.0 && probabilities.scatter >= 0.0,
@@ -348,9 +348,9 @@ mod tests {
         let probabilities = ParticleRule::NonTerminating.probabilities(r, albedo);
         let sum = albedo * r + (r - 1.0);
         for k in 1..5 {
-            let found = probabilities.kernel(1.0, [1.0 - r, albedo * r], k).scattered;
+            let result = probabilities.kernel(1.0, [1.0 - r, albedo * r], k).scattered;
             let exact = albedo * r * sum.powi(k - 1);
-            assert!((found / exact - 1.0).abs() < 1e-14, "{k}: {found:e} for {exact:e}");
+            assert!((result / exact - 1.0).abs() < 1e-14, "{k}: {result:e} for {exact:e}");
         }
     }
 

@@ -47,8 +47,8 @@ pub trait Collision: Rule + Copy + 'static {
     /// Returns the lanes with particles that end, given numbers in `[0, 1)`. A particle with the ratio NaN goes on,
     /// so that the draw shows it.
     #[inline(always)]
-    fn absorption<L: Lane>(&self, met: &Extinctions<L>, number: L) -> L::Mask {
-        self.at(met.ratio()).survival.at_most(number)
+    fn absorption<L: Lane>(&self, extinctions: &Extinctions<L>, number: L) -> L::Mask {
+        self.at(extinctions.ratio()).survival.at_most(number)
     }
 
     /// `(1 − r)/q`: the factor that makes a survivor unbiased.
@@ -119,8 +119,8 @@ impl Collision for Null {
     /// `(1 − u) σ̂ ≤ σ_t − σ_c`: its left side is computed before the lookup. It is as probable as `u < r`, the
     /// decision of pages without a control.
     #[inline(always)]
-    fn absorption<L: Lane>(&self, met: &Extinctions<L>, number: L) -> L::Mask {
-        number.times_plus(-met.sampling, met.sampling).at_most(met.residual)
+    fn absorption<L: Lane>(&self, extinctions: &Extinctions<L>, number: L) -> L::Mask {
+        number.times_plus(-extinctions.sampling, extinctions.sampling).at_most(extinctions.residual)
     }
 
     /// A survivor's q is `1 − r` or, where that is clamped, 1: no division is needed.
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn null_collisions_are_decided_as_their_chance_says() {
         for sampling in [1.0, 0.3, 1e-9, 1e9] {
-            let met = |r: f64| Extinctions {
+            let extinctions = |r: f64| Extinctions {
                 residual: r * sampling,
                 sampling,
                 mean_free_path: 1.0 / sampling,
@@ -278,15 +278,19 @@ mod tests {
                 let r = 0.05 * f64::from(step);
                 for number in [0.0, 1e-17, 0.33, 0.77, 1.0 - 0.5 * f64::EPSILON] {
                     let killed = number >= Null.at(r).survival;
-                    assert_eq!(Null.absorption(&met(r), number), killed, "{r}, {number}");
+                    assert_eq!(Null.absorption(&extinctions(r), number), killed, "{r}, {number}");
                 }
             }
             // In spite of rounding, nothing survives at r = 1, and nothing ends at r = 0.
             for number in [0.0, 0.1, 1.0 - 0.5 * f64::EPSILON] {
-                assert!(Null.absorption(&met(1.0), number) && !Null.absorption(&met(0.0), number));
+                assert!(
+                    Null.absorption(&extinctions(1.0), number)
+                        && !Null.absorption(&extinctions(0.0), number)
+                );
             }
             assert!(
-                !Null.absorption(&met(f64::NAN), 0.0) && Null.absorption(&met(f64::INFINITY), 0.0)
+                !Null.absorption(&extinctions(f64::NAN), 0.0)
+                    && Null.absorption(&extinctions(f64::INFINITY), 0.0)
             );
         }
     }

@@ -129,9 +129,9 @@ pub fn largest(
     let room = 1.0 - scattered * then.collides;
     let of_rates = [scattered, absorbed];
     let after = (then.leaves + absorbed * then.collides) / room;
-    let most = after.max(1.0);
-    let found = first.scores(of_rates, most).max(1.0) * (1.0 + SLACK);
-    (room > SLACK && found.is_finite()).then_some(found)
+    let maximum = after.max(1.0);
+    let result = first.scores(of_rates, maximum).max(1.0) * (1.0 + SLACK);
+    (room > SLACK && result.is_finite()).then_some(result)
 }
 
 /// Walk and channel without a bound on `E[X²]`.
@@ -237,8 +237,8 @@ mod tests {
         let square = square(&rates, Proposal::Hero(0), 0, &[1.5], 1.0);
         assert!((square.lost - 1.5).abs() < 1e-15 && (square.scattered - 1.05).abs() < 1e-15);
         let flight = FlightMoments::of(square.lost, 3.0);
-        let found = largest(flight, flight, [square.scattered, square.absorbed]).expect("a bound");
-        assert!((found - 1.0).abs() < 1e-8, "{found}");
+        let result = largest(flight, flight, [square.scattered, square.absorbed]).expect("a bound");
+        assert!((result - 1.0).abs() < 1e-8, "{result}");
     }
 
     #[test]
@@ -259,19 +259,19 @@ mod tests {
     fn what_flights_lose_keeps_its_digits() {
         let rates = Rates { majorants: vec![1.5, 1.7], albedos: vec![0.4, 0.9] };
         let common = Rates { majorants: vec![1.5; 2], ..rates.clone() };
-        for chance in [Chance::Average, Chance::Maximum] {
+        for probability in [Chance::Average, Chance::Maximum] {
             for (rates, walk) in [
                 (&rates, Proposal::Hero(0)),
                 (&rates, Proposal::Hero(1)),
-                (&common, Proposal::Together(chance)),
+                (&common, Proposal::Together(probability)),
             ] {
                 for channel in 0..2 {
                     let mut k = vec![0; 2];
                     k[channel] = 2;
                     let here = [0.8, 0.3];
                     let exact = rates.loss(walk, &k) - rates.gains(walk, &k, &here)[0];
-                    let found = rates.lost_by_square(walk, channel, &here);
-                    assert!((found - exact).abs() < 1e-14, "{walk:?}: {found} for {exact}");
+                    let result = rates.lost_by_square(walk, channel, &here);
+                    assert!((result - exact).abs() < 1e-14, "{walk:?}: {result} for {exact}");
                 }
             }
         }
@@ -282,8 +282,8 @@ mod tests {
             (Proposal::Hero(1), 0.8e-20),
             (Proposal::Together(Chance::Average), 0.7e-20),
         ] {
-            let found = common.lost_by_square(walk, 1, &thin);
-            assert!((found / exact - 1.0).abs() < 1e-14, "{walk:?}: {found} for {exact}");
+            let result = common.lost_by_square(walk, 1, &thin);
+            assert!((result / exact - 1.0).abs() < 1e-14, "{walk:?}: {result} for {exact}");
         }
     }
 
@@ -305,12 +305,15 @@ mod tests {
             let together = [Chance::Average, Chance::Maximum].map(Proposal::Together);
             let alone = [0, 1, 2].map(Proposal::Hero);
             for walk in alone.into_iter().chain(together.into_iter().filter(|_| common)) {
-                let found = square(&rates, walk, 1, &point, 1.3);
-                let [least, most, scattered] = square_within(&rates, walk, 1, &within, 1.3);
-                let slack = 1e-12 * (1.0 + found.lost.abs());
+                let result = square(&rates, walk, 1, &point, 1.3);
+                let [minimum, maximum, scattered] = square_within(&rates, walk, 1, &within, 1.3);
+                let slack = 1e-12 * (1.0 + result.lost.abs());
                 let context = format!("{walk:?}, {rates:?}, {within:?}, {point:?}");
-                assert!(least <= found.lost + slack && found.lost <= most + slack, "{context}");
-                assert!(found.scattered <= scattered * (1.0 + 1e-12), "{context}");
+                assert!(
+                    minimum <= result.lost + slack && result.lost <= maximum + slack,
+                    "{context}"
+                );
+                assert!(result.scattered <= scattered * (1.0 + 1e-12), "{context}");
             }
         }
     }
@@ -328,13 +331,13 @@ mod tests {
         let of = |g: f64| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("|g| < 1"));
         for g in [-0.999f64, -0.5, 0.3, 0.93, 0.99, 0.999] {
             let exact = (1.0 + g * g) / (1.0 - g * g).powi(2);
-            let found = phi(&of(g), &isotropic);
-            assert!((found / exact - 1.0).abs() < 1e-9, "{g}: {found} for {exact}");
+            let result = phi(&of(g), &isotropic);
+            assert!((result / exact - 1.0).abs() < 1e-9, "{g}: {result} for {exact}");
         }
         assert_eq!(phi(&of(0.4), &of(0.4)), 1.0);
         for (own, hero, exact) in PEAKED {
-            let found = phi(&of(own), &of(hero));
-            assert!((found / exact - 1.0).abs() < 1e-9, "{own}, {hero}: {found} for {exact}");
+            let result = phi(&of(own), &of(hero));
+            assert!((result / exact - 1.0).abs() < 1e-9, "{own}, {hero}: {result} for {exact}");
         }
         assert!(phi(&of(0.999_999_99), &isotropic).is_infinite());
     }

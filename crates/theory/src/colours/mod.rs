@@ -8,11 +8,11 @@
 //! ```
 
 pub mod bound;
-pub mod chance;
+pub mod probabilities;
 pub mod rates;
 pub mod scatterers;
 
-pub use self::chance::{Chance, Chances};
+pub use self::probabilities::{Chance, Chances};
 
 use super::Channel;
 use super::prediction::Covariance;

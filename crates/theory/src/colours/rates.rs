@@ -14,7 +14,7 @@
 //!
 //! Source: derived by Campbell's theorem, as in [`super`].
 
-use super::chance::shares;
+use super::probabilities::shares;
 use super::{Chance, Chances};
 
 /// Walker of a walk.
@@ -77,8 +77,8 @@ impl Rates {
                 (linear - own * own - (majorant - of_hero).powi(2)) / (of_hero - other)
             }
             Proposal::Together(_) if !is_null => majorant,
-            Proposal::Together(chance) => {
-                let [null, scattered, absorbed] = self.chances(chance, extinctions);
+            Proposal::Together(probability) => {
+                let [null, scattered, absorbed] = self.chances(probability, extinctions);
                 let ratio = own / majorant;
                 majorant * (ratio * (2.0 - ratio) - (scattered + absorbed)) / null
             }
@@ -93,8 +93,8 @@ impl Rates {
         let scattered = |channel: usize| extinctions[channel] * self.albedos[channel];
         let [by_null, by_scattering] = match walk {
             Proposal::Hero(hero) => [null(hero), scattered(hero)],
-            Proposal::Together(chance) => {
-                let [null, scattered, _] = self.chances(chance, extinctions);
+            Proposal::Together(probability) => {
+                let [null, scattered, _] = self.chances(probability, extinctions);
                 [majorants[0] * null, majorants[0] * scattered]
             }
         };
@@ -106,15 +106,17 @@ impl Rates {
         let own = |channel: usize| extinctions[channel] * (1.0 - self.albedos[channel]);
         let by = match walk {
             Proposal::Hero(hero) => own(hero),
-            Proposal::Together(chance) => self.majorants[0] * self.chances(chance, extinctions)[2],
+            Proposal::Together(probability) => {
+                self.majorants[0] * self.chances(probability, extinctions)[2]
+            }
         };
         product(k, own, by)
     }
 
     /// `P_n`, `P_s` and `P_a` of walks of all channels together.
-    fn chances(&self, chance: Chance, extinctions: &[f64]) -> [f64; 3] {
+    fn chances(&self, probability: Chance, extinctions: &[f64]) -> [f64; 3] {
         let of = |i: usize| shares(extinctions[i] / self.majorants[i], self.albedos[i]);
-        Chances::Fixed(chance).of_events(extinctions.len(), of, extinctions)
+        Chances::Fixed(probability).of_events(extinctions.len(), of, extinctions)
     }
 
     /// N of ratio tracking through the walker's σ̂.
@@ -129,14 +131,14 @@ impl Rates {
 
 /// `Π x_λ^{k_λ}/by^{K−1}`; 0 where the event has the rate 0 in a channel with k > 0.
 fn product(k: &[i32], of: impl Fn(usize) -> f64, by: f64) -> f64 {
-    let mut found = 1.0;
+    let mut result = 1.0;
     for (channel, &k) in k.iter().enumerate().filter(|(_, k)| **k > 0) {
-        found *= of(channel).powi(k);
+        result *= of(channel).powi(k);
     }
     let total: i32 = k.iter().sum();
     match total {
         0 => by,
-        _ if found == 0.0 => 0.0,
-        _ => found / by.powi(total - 1),
+        _ if result == 0.0 => 0.0,
+        _ => result / by.powi(total - 1),
     }
 }

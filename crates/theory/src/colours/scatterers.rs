@@ -24,7 +24,7 @@ use numeric::Known;
 /// Probabilities to leave after r scatterings that never absorb.
 pub struct Orders {
     /// Reflected and transmitted.
-    pub found: Vec<[f64; 2]>,
+    pub result: Vec<[f64; 2]>,
     /// A bound on their relative error.
     pub error: f64,
     /// A bound on the absolute error of each, in addition: rare ones have fewer digits, and large weights.
@@ -163,14 +163,14 @@ impl<'a> BodySpectrum<'a> {
                 let channel = k.iter().position(|&k| k == total);
                 Some(channel.map_or(Known::new(0.0, 0.0), |channel| {
                     let weight = self.hero[channel].powi(1 - total);
-                    let found = self.body.leaving(self.colours.albedos[channel]);
-                    found.map_or(Known::new(0.0, 0.0), |found| found[side] * weight)
+                    let result = self.body.leaving(self.colours.albedos[channel]);
+                    result.map_or(Known::new(0.0, 0.0), |result| result[side] * weight)
                 }))
             }
             BodyTracker::Hero | BodyTracker::Tracking { .. } => {
                 let each = self.walkers().into_iter().map(|(weight, scatter)| {
-                    let found = self.body.power(self.albedo_of_power(k, scatter));
-                    found.map_or(Known::INFINITE, |found| found[side]) * weight
+                    let result = self.body.power(self.albedo_of_power(k, scatter));
+                    result.map_or(Known::INFINITE, |result| result[side]) * weight
                 });
                 Some(each.sum())
             }
@@ -178,7 +178,7 @@ impl<'a> BodySpectrum<'a> {
                 let orders = self.orders.as_ref()?;
                 let mut powers = vec![1.0; k.len()];
                 let [mut sum, mut off] = [0.0, orders.blur];
-                for order in &orders.found {
+                for order in &orders.result {
                     let density: f64 = self.hero.iter().zip(&powers).map(|(w, a)| w * a).sum();
                     if density > 0.0 {
                         let weights = powers.iter().zip(k).map(|(a, &k)| (a / density).powi(k));
@@ -216,7 +216,7 @@ impl<'a> BodySpectrum<'a> {
             1 => Some(truth),
             _ => self.moment(end, &self.only(channel, k)),
         });
-        let found = match raw {
+        let result = match raw {
             Some(raw) if raw.is_certain(truth.value) => {
                 Channel::unbiased(truth, Moments::certain(truth.value), raw.tails(UNRESOLVED))
             }
@@ -224,7 +224,7 @@ impl<'a> BodySpectrum<'a> {
             // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0.
             None => colours::bounded(truth, self.hero[channel]),
         };
-        Channel { name: end.name(channel), ..found }
+        Channel { name: end.name(channel), ..result }
     }
 
     fn covariance(
@@ -247,8 +247,8 @@ impl<'a> BodySpectrum<'a> {
         let [ab, aab, abb] = [joint(1, 1)?, joint(2, 1)?, joint(1, 2)?];
         let squares = [joint(2, 0)?, joint(0, 2)?];
         let mixed = [ab, aab, abb, joint(2, 2)?];
-        let found = Covariance::of_raw([index, index + 1], [a, b], squares, mixed);
-        let variance = if found.variance.is_nan() { f64::INFINITY } else { found.variance };
-        Some(Covariance { variance, ..found })
+        let result = Covariance::of_raw([index, index + 1], [a, b], squares, mixed);
+        let variance = if result.variance.is_nan() { f64::INFINITY } else { result.variance };
+        Some(Covariance { variance, ..result })
     }
 }

@@ -211,9 +211,9 @@ impl Contour {
 
     /// Means for a ratio q, from the moments of x on a line. `off` is their relative error; where it is 0 no errors are computed.
     pub fn scores(&self, line: usize, ratio: f64, moments: &[f64], off: f64) -> TechniqueScores {
-        let mut found = TechniqueScores::default();
+        let mut result = TechniqueScores::default();
         if ratio <= 0.0 {
-            return found;
+            return result;
         }
         let line = &self.lines[line];
         let width = 2 * self.highest;
@@ -248,10 +248,10 @@ impl Contour {
                 mean += term;
                 size += term.abs();
             }
-            found.means[made][k] = mean;
-            found.errors[made][k] = off * size + beside * unit * poles.nearest;
+            result.means[made][k] = mean;
+            result.errors[made][k] = off * size + beside * unit * poles.nearest;
         }
-        found
+        result
     }
 }
 
@@ -316,10 +316,10 @@ mod tests {
 
     /// Mean of a function of x for a Poisson number of null collisions, each with the factor `left` = 1 − r.
     fn poisson(mean: f64, f: impl Fn(f64) -> f64, left: f64) -> f64 {
-        let (mut sum, mut chance, mut x) = (0.0, (-mean).exp(), 1.0);
+        let (mut sum, mut probability, mut x) = (0.0, (-mean).exp(), 1.0);
         for n in 1..200 {
-            sum += chance * f(x);
-            chance *= mean / f64::from(n);
+            sum += probability * f(x);
+            probability *= mean / f64::from(n);
             x *= left;
         }
         sum

@@ -112,12 +112,12 @@ impl Techniques {
     /// Score of a shadow ray, given its transmittance.
     #[inline(always)]
     pub fn of_shadow_ray<L: Lane>(self, phase: L, transmittance: L) -> L {
-        let found = phase * transmittance;
-        let ratio = if self.is_full() { found } else { phase };
+        let result = phase * transmittance;
+        let ratio = if self.is_full() { result } else { phase };
         match self.combination {
-            Combination::Unidirectional => found.each(0.0),
-            Combination::NextEvent => found,
-            Combination::Mis(_, heuristic) => found / (heuristic.raised(ratio) + 1.0),
+            Combination::Unidirectional => result.each(0.0),
+            Combination::NextEvent => result,
+            Combination::Mis(_, heuristic) => result / (heuristic.raised(ratio) + 1.0),
         }
     }
 }

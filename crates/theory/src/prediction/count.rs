@@ -73,10 +73,11 @@ impl CountDistribution {
         let [mean, pairs, triples, fours] = factorial.map(|known| known.value);
         let [error, of_pairs, of_triples, of_fours] = factorial.map(|known| known.error);
         let relative = if mean > 0.0 { error / mean } else { 0.0 };
-        let law = Self::of_raw(0.0, raw::of_factorial([mean, pairs, triples, fours]), relative);
-        let law = Self { grade: factorial[0].grade, ..law };
-        if law.variance <= 0.0 {
-            return law;
+        let distribution =
+            Self::of_raw(0.0, raw::of_factorial([mean, pairs, triples, fours]), relative);
+        let distribution = Self { grade: factorial[0].grade, ..distribution };
+        if distribution.variance <= 0.0 {
+            return distribution;
         }
         let of_variance =
             of_pairs + (1.0 - 2.0 * mean).abs() * error + ROUNDING * (pairs + mean + mean * mean);
@@ -92,21 +93,21 @@ impl CountDistribution {
             + slopes[1].abs() * of_pairs
             + slope.abs() * error
             + ROUNDING * sizes;
-        let fourth = law.kurtosis * law.variance * law.variance;
-        let moments_error = (of_variance / law.variance).max(of_fourth / fourth);
-        Self { moments_error, ..law }
+        let fourth = distribution.kurtosis * distribution.variance * distribution.variance;
+        let moments_error = (of_variance / distribution.variance).max(of_fourth / fourth);
+        Self { moments_error, ..distribution }
     }
 
     /// Mean, variance and kurtosis from the smallest number and the raw moments of the rest, with an estimate
     /// of the relative error of the mean; no probabilities. The raw moment `E[M^k]` has k times the relative error of
     /// `E[M]`.
-    pub fn of_raw(least: f64, [_, mean, square, cube, fourth]: Raw, error: f64) -> Self {
+    pub fn of_raw(minimum: f64, [_, mean, square, cube, fourth]: Raw, error: f64) -> Self {
         let variance = square - mean * mean;
         // A number that is nearly constant has a variance of rounding errors.
         if variance <= HIDDEN * square {
-            return Self { error, grade: Grade::Estimated, ..Self::always(least + mean) };
+            return Self { error, grade: Grade::Estimated, ..Self::always(minimum + mean) };
         }
-        let relative = error * (least + mean) / mean;
+        let relative = error * (minimum + mean) / mean;
         let of_variance =
             2.0 * relative * (square + mean * mean) + ROUNDING * (square + mean * mean);
         let (cubes, squares, last) =
@@ -116,7 +117,7 @@ impl CountDistribution {
         let fourth = (fourth - cubes + squares - last).max(variance * variance);
         let kurtosis = fourth / (variance * variance);
         let moments_error = (of_variance / variance).max(of_fourth / fourth);
-        let (mean, grade, pmf) = (least + mean, Grade::Estimated, Vec::new());
+        let (mean, grade, pmf) = (minimum + mean, Grade::Estimated, Vec::new());
         Self { mean, variance, error, grade, moments_error, kurtosis, pmf }
     }
 }
@@ -161,9 +162,9 @@ impl PoissonWindow {
             self.below.push(p);
         }
         let scale = weight / (self.above.iter().sum::<f64>() + self.below.iter().sum::<f64>());
-        let most = shift + mode + self.above.len();
-        if pmf.len() < most {
-            pmf.resize(most, 0.0);
+        let maximum = shift + mode + self.above.len();
+        if pmf.len() < maximum {
+            pmf.resize(maximum, 0.0);
         }
         let (low, high) = pmf.split_at_mut(shift + mode);
         high.iter_mut().zip(&self.above).for_each(|(sum, p)| *sum += scale * p);
@@ -184,8 +185,8 @@ mod tests {
     #[test]
     fn rare_lookups_keep_their_digits() {
         // 3 and, once in a thousand millions, one more.
-        let law = CountDistribution::of_raw(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9], 0.0);
-        assert_eq!(law.mean, 3.000_000_001);
-        assert!((law.variance / 1e-9 - 1.0).abs() < 2e-9 && law.kurtosis > 0.9e9);
+        let distribution = CountDistribution::of_raw(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9], 0.0);
+        assert_eq!(distribution.mean, 3.000_000_001);
+        assert!((distribution.variance / 1e-9 - 1.0).abs() < 2e-9 && distribution.kurtosis > 0.9e9);
     }
 }

@@ -102,8 +102,8 @@ impl Channel {
 
     /// A channel of draws that are never negative, with a bound on `E[X²]` instead of moments.
     pub fn bounded(truth: Known, square: f64) -> Self {
-        let least = (truth.value - truth.error).max(0.0);
-        let variance_bound = Some((square - least * least).max(0.0));
+        let minimum = (truth.value - truth.error).max(0.0);
+        let variance_bound = Some((square - minimum * minimum).max(0.0));
         Self { variance_bound, ..Self::unbiased(truth, None, Tails::LIGHT) }
     }
 

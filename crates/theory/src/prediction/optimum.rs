@@ -81,7 +81,7 @@ fn best(goal: &Goal, places: &[f64]) -> Option<Optimum> {
     let value = |step: usize| goal.at(places[step]);
     let last = COARSE - 1;
     let step = (0..COARSE).rev().min_by(|&a, &b| value(a).total_cmp(&value(b)))?;
-    let found = |log: f64, kind| Optimum {
+    let result = |log: f64, kind| Optimum {
         sampling: log.exp(),
         figure_of_merit: goal.at(log).recip(),
         limit: None,
@@ -91,16 +91,16 @@ fn best(goal: &Goal, places: &[f64]) -> Option<Optimum> {
         return None;
     }
     if value(step) == 0.0 {
-        return Some(found(places[step], PlaceKind::NoVariance));
+        return Some(result(places[step], PlaceKind::NoVariance));
     }
     if step == 0 {
-        return Some(found(places[0], PlaceKind::EndOfSearch));
+        return Some(result(places[0], PlaceKind::EndOfSearch));
     }
     let before = places[step - 1];
     let (far, limit) = if step == last {
         match limit(goal, [before, places[last]]) {
-            Some(found) => found,
-            None => return Some(found(places[last], PlaceKind::EndOfSearch)),
+            Some(result) => result,
+            None => return Some(result(places[last], PlaceKind::EndOfSearch)),
         }
     } else {
         // A refused place beside the best one is a cliff that golden sections walk up to.
@@ -108,12 +108,12 @@ fn best(goal: &Goal, places: &[f64]) -> Option<Optimum> {
         // Refused because of too many collisions, not of its domain: this is as near to the limit as draws can be made.
         let is_cliff = (step + 1..COARSE).all(|step| value(step).is_infinite());
         if !(is_cliff && value(step - 1) <= value(step) * (1.0 + FLAT)) {
-            return Some(found(log, PlaceKind::Optimum));
+            return Some(result(log, PlaceKind::Optimum));
         }
         (log, extrapolated(goal, [before, log]))
     };
     let edge = goal.edge(far.exp(), -1.0, limit / SHARE, FURTHEST);
-    let near = |edge: f64| found(far + edge.ln(), PlaceKind::NearLimit);
+    let near = |edge: f64| result(far + edge.ln(), PlaceKind::NearLimit);
     (edge > 0.0).then(|| Optimum { limit: Some(limit.recip()), ..near(edge) })
 }
 

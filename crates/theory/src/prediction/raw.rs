@@ -76,8 +76,8 @@ pub struct RawMoments(pub [Known; POWERS.len()]);
 impl RawMoments {
     /// Raw moments by their powers; `None` where one is not known.
     pub fn of(power: impl FnMut(i32) -> Option<Known>) -> Option<Self> {
-        let found: Vec<Known> = POWERS.into_iter().map(power).collect::<Option<_>>()?;
-        found.try_into().ok().map(Self)
+        let result: Vec<Known> = POWERS.into_iter().map(power).collect::<Option<_>>()?;
+        result.try_into().ok().map(Self)
     }
 
     /// Raw moments with estimates of their relative errors.
@@ -137,10 +137,10 @@ impl RawMoments {
         let skew = b - 3.0 * a + 2.0;
         let off = e4 + 4.0 * e3 + 6.0 * e2 + 4.0 * (1.0 + skew).abs() * blur;
         let off = off + rounding(c + 4.0 * b.abs() + 6.0 * a + 3.0);
-        let found = c - 4.0 * b + 6.0 * a - 3.0;
-        let [peak, of_peak] = not_negative(found.max(variance * variance), off);
+        let result = c - 4.0 * b + 6.0 * a - 3.0;
+        let [peak, of_peak] = not_negative(result.max(variance * variance), off);
         // By Jensen's inequality the fourth moment is at least the square of the second.
-        let is_possible = found >= (1.0 - limit) * variance * variance - FAINT;
+        let is_possible = result >= (1.0 - limit) * variance * variance - FAINT;
         if !(c.is_finite() && b.is_finite() && of_peak < limit && is_possible) {
             let relative = [variance, f64::INFINITY, f64::INFINITY];
             return Moments { scale: m, relative, error, grade };
@@ -154,8 +154,8 @@ impl RawMoments {
     pub fn tails(&self, limit: f64) -> Tails {
         let [_, two, _, fourth, eighth] = self.0;
         let two = two.value;
-        let or_infinite = |Known { value, error, .. }: Known, least: f64| {
-            let is_resolved = error <= limit * value && value >= (1.0 - limit) * least;
+        let or_infinite = |Known { value, error, .. }: Known, minimum: f64| {
+            let is_resolved = error <= limit * value && value >= (1.0 - limit) * minimum;
             if is_resolved { value } else { f64::INFINITY }
         };
         let four = or_infinite(fourth, two * two);

@@ -190,7 +190,7 @@ impl<'a> Goal<'a> {
 
     /// Returns the place to advise near `start`; `None` where no place can be taken.
     pub fn best(&self, start: f64, reach: i32) -> Option<(f64, f64, PlaceKind)> {
-        self.least(start, reach, f64::INFINITY).map(|least| self.settled(least))
+        self.least(start, reach, f64::INFINITY).map(|minimum| self.settled(minimum))
     }
 
     /// Returns the factor on x, below 1 for the sign −1 and above for 1, up to which the value is at most `level`; 0 or

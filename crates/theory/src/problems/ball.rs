@@ -135,61 +135,61 @@ impl Sphere {
 
     /// Mistakes of the settings, or of questions without an answer: the key, what is wrong, and the cure.
     fn mistakes(&self) -> Vec<(&'static str, String, &'static str)> {
-        let mut found = Vec::new();
+        let mut actual = Vec::new();
         if self.scene.phase != Phase::Isotropic(Isotropic) {
             let label = self.scene.phase.label();
             let wrong = format!("theory has no answer for `{label}`");
-            found.push(("phase", wrong, "write `phase.isotropic = {}`"));
+            actual.push(("phase", wrong, "write `phase.isotropic = {}`"));
         }
         if self.scene.albedo.even().is_none() {
-            found.push(("albedo", "the albedo varies".into(), "theory takes one number here"));
+            actual.push(("albedo", "the albedo varies".into(), "theory takes one number here"));
         }
         let core = if let BallLight::BlackSphere(core) = self.light { core } else { 0.0 };
         if core >= self.radius {
             let wrong = format!("its radius is {core}, that of the ball {}", self.radius);
-            found.push(("light", wrong, "the black sphere is inside the ball"));
+            actual.push(("light", wrong, "the black sphere is inside the ball"));
         }
         let away = self.distance();
         let ray = Ray { length: f64::INFINITY, ..self.ray };
         if core > 0.0 && away <= core {
             let wrong = "it begins in the black sphere".into();
-            found.push(("ray", wrong, "move its origin outwards"));
+            actual.push(("ray", wrong, "move its origin outwards"));
         }
         if self.sought == Sought::Radiance && self.scene.volume.bounds().clip(&ray).is_empty() {
-            found.push(("ray", "it misses the ball".into(), "the medium must be on its way"));
+            actual.push(("ray", "it misses the ball".into(), "the medium must be on its way"));
         }
         if self.sought == Sought::MeanIntensity && away > self.radius {
             let wrong = format!("it begins {away} from the centre of a ball of {}", self.radius);
-            found.push(("ray", wrong, "the point is in the ball"));
+            actual.push(("ray", wrong, "the point is in the ball"));
         }
         let is_central = self.sought == Sought::MeanIntensity && away <= 1e-12 * self.radius;
         if matches!(self.light, BallLight::Distant(_)) && !is_central {
             let help = "theory knows it at the centre: begin the ray there, and write \
                         `sought = \"mean-intensity\"`";
-            found.push(("light", "a distant light is not radially symmetric".into(), help));
+            actual.push(("light", "a distant light is not radially symmetric".into(), help));
         }
-        found
+        actual
     }
 }
 
 fn read_light(settings: &Settings) -> Option<BallLight> {
     let names = ["environment", "black-sphere", "distant"].map(str::to_owned);
     let explain = |name: &str| {
-        let found = "next-event estimation of a point light in a medium that scatters more than \
+        let actual = "next-event estimation of a point light in a medium that scatters more than \
                      once has an infinite variance";
         let help = "take `black-sphere`, or the problem `single-scattering`";
-        (name == "point").then(|| [found, help].map(str::to_owned))
+        (name == "point").then(|| [actual, help].map(str::to_owned))
     };
     let (index, light) = settings.chosen_explained("light", &names, &explain)?;
     let read = match index {
         0 => Some(BallLight::Environment),
         1 => light.number("radius", Domain::Positive).map(BallLight::BlackSphere),
         _ => light.triple("direction").and_then(|direction| {
-            let found = Point(direction).normalised().map(BallLight::Distant);
-            if found.is_none() {
+            let actual = Point(direction).normalised().map(BallLight::Distant);
+            if actual.is_none() {
                 light.fault("direction", "the direction is the zero vector", "point at the light");
             }
-            found
+            actual
         }),
     };
     light.close();

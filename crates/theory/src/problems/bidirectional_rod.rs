@@ -66,10 +66,10 @@ impl Problem for BidirectionalRod {
                 _ => Sensor::Transmitted,
             });
         // Light that comes back is scattered at least once.
-        let least = u64::from(sensor == Some(Sensor::Reflected));
-        let highest = settings.count("orders", least..=HIGHEST_ORDER as u64);
+        let minimum = u64::from(sensor == Some(Sensor::Reflected));
+        let highest = settings.count("orders", minimum..=HIGHEST_ORDER as u64);
         let lowest =
-            settings.count_or("lowest", least..=highest.unwrap_or(HIGHEST_ORDER as u64), least);
+            settings.count_or("lowest", minimum..=highest.unwrap_or(HIGHEST_ORDER as u64), minimum);
         let has_shares = settings.flag_or("shares", true);
         let (medium, scattered) = (body?.medium(), [albedo?, forward?]);
         let orders = lowest? as usize..=highest? as usize;

@@ -119,8 +119,8 @@ pub(super) fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<
     }
     let bounds = channels[0].volume.bounds();
     if channels.iter().any(|channel| channel.volume.bounds() != bounds) {
-        let found = "the channels do not fill the same part of space";
-        settings.fault("volume", found, "give all of them the same `bounds`");
+        let actual = "the channels do not fill the same part of space";
+        settings.fault("volume", actual, "give all of them the same `bounds`");
         return None;
     }
     Some(channels)

@@ -84,8 +84,8 @@ fn read_entry(settings: &Settings, bounds: Bounds, ray: &Ray) -> Option<Point> {
     let inside = bounds.clip(ray);
     if inside.is_empty() {
         let help = "turn it, or move its origin: what misses the volume tests nothing";
-        let found = format!("the ray misses the volume, whose {}", misses::place(bounds));
-        settings.fault("ray", found, help);
+        let actual = format!("the ray misses the volume, whose {}", misses::place(bounds));
+        settings.fault("ray", actual, help);
         return None;
     }
     Some(ray.at(inside.from))

@@ -88,8 +88,8 @@ impl Problem for InfiniteMedium {
             return None;
         }
         if radii.len() > MAX_RADII {
-            let found = format!("{} radii", radii.len());
-            settings.fault("radii", found, format!("give at most {MAX_RADII}"));
+            let actual = format!("{} radii", radii.len());
+            settings.fault("radii", actual, format!("give at most {MAX_RADII}"));
             return None;
         }
         if !radii.is_empty() && !matches!(scene.phase, Phase::Isotropic(_)) {

@@ -36,13 +36,13 @@ fn before_emitter(body: &Body, settings: &Settings) -> Option<Medium> {
     let (span, support) = (medium.span(), medium.support());
     if span.to - support.to > TOUCHES * span.length() {
         let (end, bound) = (number(span.to), rounded(support.to));
-        let found = format!("the emitter, at {end}, is in a vacuum: the field ends at {bound}");
-        settings.fault(key, found, "end the ray inside the bounds of the field");
+        let actual = format!("the emitter, at {end}, is in a vacuum: the field ends at {bound}");
+        settings.fault(key, actual, "end the ray inside the bounds of the field");
         return None;
     }
     if medium.optical_depth(support).value <= 0.0 {
-        let found = "the emitter is behind a vacuum: σ_t = 0 from the camera to it";
-        settings.fault(key, found, "give the rod some extinction");
+        let actual = "the emitter is behind a vacuum: σ_t = 0 from the camera to it";
+        settings.fault(key, actual, "give the rod some extinction");
         return None;
     }
     Some(medium)

@@ -133,13 +133,13 @@ impl Problem for LitSlab {
             body => ("medium", body.medium()),
         };
         if medium.optical_depth(medium.support()).value <= 0.0 {
-            let found = "nothing scatters: σ_t = 0 along the ray";
-            settings.fault(key, found, "give the slab some extinction");
+            let actual = "nothing scatters: σ_t = 0 along the ray";
+            settings.fault(key, actual, "give the slab some extinction");
             return None;
         }
         if albedo == Some(0.0) {
-            let found = "nothing scatters: `albedo` is 0";
-            settings.fault("albedo", found, "it takes a number above 0 and up to 1");
+            let actual = "nothing scatters: `albedo` is 0";
+            settings.fault("albedo", actual, "it takes a number above 0 and up to 1");
             return None;
         }
         Some(Self::new(medium, albedo?, phase?, light?))
@@ -189,14 +189,14 @@ mod tests {
         let disc = LightBehind::Disc { distance: 0.5, radius: 0.7 };
         for (light, before) in [(LightBehind::Cap(0.3), 0.2), (disc, 0.4)] {
             let lowest = if light == disc { 0.9 / 0.9f64.hypot(0.7) } else { 0.3 };
-            let found = rule.integrate(0.0, 1.0, |u| {
+            let actual = rule.integrate(0.0, 1.0, |u| {
                 let [cosine, spread] = light.chosen(u, before);
                 assert!(light.is_met(cosine, before));
                 assert!(!light.is_met(lowest - 1e-9, before) && !light.is_met(-cosine, before));
                 assert!((light.spread(cosine, before) / spread - 1.0).abs() < 1e-14);
                 spread
             });
-            assert!((found - TAU * (1.0 - lowest)).abs() < 1e-13, "{light:?}: {found}");
+            assert!((actual - TAU * (1.0 - lowest)).abs() < 1e-13, "{light:?}: {actual}");
         }
         assert_eq!(disc.lowest(), 0.5 / 0.5f64.hypot(0.7));
     }

@@ -91,14 +91,14 @@ pub fn chosen(forms: &[&[ProblemOption]], settings: &Settings) -> Option<usize> 
         }
     }
     let has_all = |form: &usize| given.iter().all(|option| forms[*form].contains(option));
-    let found = (0..forms.len()).filter(has_all).min_by_key(|&form| forms[form].len());
-    if found.is_none() {
+    let actual = (0..forms.len()).filter(has_all).min_by_key(|&form| forms[form].len());
+    if actual.is_none() {
         let possible: Vec<String> = forms[1..].iter().map(|form| listed(form)).collect();
         let message = format!("{} do not go together", listed(&given));
         let help = format!("give one of: {}", possible.join("; "));
         settings.fault_at(settings.span.clone(), "", message, help);
     }
-    found
+    actual
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ impl Albedo {
     pub fn range(&self) -> [f64; 2] {
         match self {
             Self::Even(albedo) => [*albedo; 2],
-            Self::Field(_, most) => [0.0, *most],
+            Self::Field(_, maximum) => [0.0, *maximum],
         }
     }
 
@@ -109,12 +109,12 @@ pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albed
         return number(settings, "albedo", default_albedo(settings)).map(Albedo::Even);
     }
     let (_, field) = reader::read_volume(settings, Some("albedo"))?;
-    let most = volume?.bounds().enclosing_box().map(|within| field.majorant(&within));
+    let maximum = volume?.bounds().enclosing_box().map(|within| field.majorant(&within));
     // A bound is raised a little over what the field reaches.
-    let Some(most) = most.filter(|&most| most <= 1.0 + 1e-9) else {
+    let Some(maximum) = maximum.filter(|&maximum| maximum <= 1.0 + 1e-9) else {
         let help = "an albedo is at most 1; its bound is taken over the box about the volume";
         settings.fault("albedo", "the field may exceed 1 in the volume", help);
         return None;
     };
-    Some(Albedo::Field(field, most.min(1.0)))
+    Some(Albedo::Field(field, maximum.min(1.0)))
 }

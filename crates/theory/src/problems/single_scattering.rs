@@ -371,12 +371,12 @@ impl Problem for SingleScattering {
 }
 
 /// Reports a light on the line of the ray.
-fn off_the_line<T>(settings: &Settings, found: Result<T, OnTheLine>) -> Option<T> {
-    if let Err(OnTheLine(distance)) = found {
-        let found = format!("the light is {distance:e} away from the line of the ray");
-        settings.fault("light", found, "move it off the line: on the ray L is infinite");
+fn off_the_line<T>(settings: &Settings, actual: Result<T, OnTheLine>) -> Option<T> {
+    if let Err(OnTheLine(distance)) = actual {
+        let actual = format!("the light is {distance:e} away from the line of the ray");
+        settings.fault("light", actual, "move it off the line: on the ray L is infinite");
     }
-    found.ok()
+    actual.ok()
 }
 
 /// Single scattering of a point light in several channels.
@@ -397,8 +397,8 @@ impl Problem for SpectralSingleScattering {
         let (lamp, scatterers) = (Lamp::read(settings), read_channels(body, settings));
         let (lamp, scatterers) = (lamp?, scatterers?);
         if let Some(dark) = scatterers.iter().position(|channel| channel.albedo <= 0.0) {
-            let found = format!("nothing is scattered in channel {}", dark + 1);
-            settings.fault("albedos", found, "every albedo is above 0");
+            let actual = format!("nothing is scattered in channel {}", dark + 1);
+            settings.fault("albedos", actual, "every albedo is above 0");
             return None;
         }
         let Body::Volume { ray, .. } = &body?.channels()[0] else { return None };

@@ -25,9 +25,12 @@ const RARE: f64 = 1e-18;
 impl Product<'_> {
     /// Distribution of the number of lookups; `all` are the integrals over the whole of this estimator's own mesh.
     pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountDistribution {
-        let law = all.count(mesh.relative_error());
-        if !(self.with_distributions && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {
-            return law;
+        let distribution = all.count(mesh.relative_error());
+        if !(self.with_distributions
+            && distribution.pmf.is_empty()
+            && distribution.mean <= LARGEST_MEAN)
+        {
+            return distribution;
         }
         let mut walk = PanelSum::default();
         for panel in mesh.panels() {
@@ -36,7 +39,7 @@ impl Product<'_> {
             }
             walk.pass(self, mesh, panel);
         }
-        CountDistribution { pmf: walk.end(), ..law }
+        CountDistribution { pmf: walk.end(), ..distribution }
     }
 }
 
@@ -61,8 +64,8 @@ impl PanelSum {
         let survivals: Vec<f64> = pairs().map(|(s, o)| s * o.survival).collect();
         let survived = mesh.integral(panel, &survivals);
         let middle = panel.span.middle();
-        let most = COLLISIONS.max(0.5 * self.survivals.value().max(0.0).sqrt());
-        if survived > most && panel.span.contains_inside(middle) {
+        let maximum = COLLISIONS.max(0.5 * self.survivals.value().max(0.0).sqrt());
+        if survived > maximum && panel.span.contains_inside(middle) {
             for span in panel.span.halves() {
                 if self.alive() < RARE {
                     return;

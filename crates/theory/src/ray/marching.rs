@@ -44,15 +44,15 @@ pub fn predict(mesh: &Mesh, log_unit: f64, steps: u32, jitter: bool) -> Predicti
         // Ends of panels are rounded, too.
         let ends = f64::EPSILON * f64::from(steps) * offsets.len() as f64;
         let mean = mean.blurred((rounding + ends) * mean.value);
-        let found = over(&offsets, |u| {
+        let result = over(&offsets, |u| {
             let apart = value(u) / mean.value - 1.0;
             [2, 3, 4].map(|k| apart.powi(k))
         });
-        let [m2, m3, m4] = found.map(|known| known.value);
+        let [m2, m3, m4] = result.map(|known| known.value);
         // An error of the mean moves μ₂ by its square and μ₄ by 4 μ₃ of it; draws by their own rounding.
         let off = mean.relative_error() + rounding;
-        let of_second = found[0].error + off * (off + 2.0 * m2.sqrt());
-        let of_fourth = found[2].error + 4.0 * off * (off + m4.powf(0.75) + m3.abs());
+        let of_second = result[0].error + off * (off + 2.0 * m2.sqrt());
+        let of_fourth = result[2].error + 4.0 * off * (off + m4.powf(0.75) + m3.abs());
         let error = if m2 > 0.0 { (of_second / m2).max(of_fourth / m4) } else { 0.0 };
         (mean, Moments::estimated(mean.value, [m2, m3, m4], error))
     } else {
@@ -89,13 +89,13 @@ fn over<const N: usize>(offsets: &[f64], f: impl Fn(f64) -> [f64; N]) -> [Known;
     let is_fine = |here: &Halved<N>, scale: &[f64; N]| {
         here.change().iter().zip(scale).all(|(change, scale)| change.abs() <= AGREED * scale)
     };
-    let mut found = [Known::estimated(0.0, 0.0); N];
+    let mut result = [Known::estimated(0.0, 0.0); N];
     for here in halve(&mut Span::between(offsets), LIMITS, &panel, &is_fine) {
-        for (i, known) in found.iter_mut().enumerate() {
+        for (i, known) in result.iter_mut().enumerate() {
             *known = *known + Known::estimated(here.value()[i], here.change()[i].abs());
         }
     }
-    found
+    result
 }
 
 #[cfg(test)]

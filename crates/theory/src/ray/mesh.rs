@@ -360,7 +360,7 @@ impl Mesh {
 
     /// The distances at which `f(t, σ_t)` changes sign.
     pub fn roots(&self, f: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         let at = |t: f64| f(t, self.medium.extinction(t));
         for (i, panel) in self.panels().enumerate() {
             let mut last = None;
@@ -368,7 +368,7 @@ impl Mesh {
                 let value = f(t, sigma);
                 match last {
                     Some((before, old)) if (old < 0.0) != (value < 0.0) => {
-                        found.push(roots::root(before, t, &at));
+                        result.push(roots::root(before, t, &at));
                     }
                     _ => {}
                 }
@@ -381,11 +381,11 @@ impl Mesh {
             let node = |i: usize| (panel.t[i], panel.extinction[i]);
             for [a, b] in [[(low, sigma_first), node(0)], [node(end), (high, sigma_last)]] {
                 if a.0 < b.0 && (f(a.0, a.1) < 0.0) != (f(b.0, b.1) < 0.0) {
-                    found.push(roots::root(a.0, b.0, &at));
+                    result.push(roots::root(a.0, b.0, &at));
                 }
             }
         }
-        found
+        result
     }
 
     /// Position and value of the maximum of `f(t, σ_t)`: the best node, then a search between the nodes beside it.

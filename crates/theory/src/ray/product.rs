@@ -113,11 +113,11 @@ impl<'a> Product<'a> {
             // A control that fits to the last digits leaves a residual of rounding noise, which no
             // halving makes smooth.
             let largest = |values: &mut dyn Iterator<Item = f64>| {
-                values.fold(0.0f64, |most, x| most.max(x.abs()))
+                values.fold(0.0f64, |maximum, x| maximum.max(x.abs()))
             };
             let loss = largest(&mut nodes.outcome.iter().map(|o| o.loss));
             let seen = largest(&mut panel.extinction.iter().copied());
-            let flown = nodes.sampling.iter().fold(f64::INFINITY, |least, &s| least.min(s));
+            let flown = nodes.sampling.iter().fold(f64::INFINITY, |minimum, &s| minimum.min(s));
             let mut functions = vec![decay];
             if 4.0 * f64::EPSILON * seen / flown <= 1e-10 * loss {
                 functions.push(pairs().map(|(s, o)| s * o.mean_loss(2)).collect());
@@ -131,16 +131,16 @@ impl<'a> Product<'a> {
     /// be cut there).
     pub fn integrals(&self, mesh: &Mesh, ends: &[f64]) -> Vec<Integrals> {
         let mut total = Totals::default();
-        let mut found = Vec::with_capacity(ends.len());
+        let mut result = Vec::with_capacity(ends.len());
         let mut ends = ends.iter().peekable();
         for panel in mesh.panels() {
             while ends.next_if(|&&end| end <= panel.span.from).is_some() {
-                found.push(total.read());
+                result.push(total.read());
             }
             total.add(mesh, panel, &self.nodes(panel), self.killing);
         }
-        found.extend(ends.map(|_| total.read()));
-        found
+        result.extend(ends.map(|_| total.read()));
+        result
     }
 
     /// Share of the support on which `σ̂ E[(1 − W)²] ≤ 2σ_t`: between the places where the sides cross. `None` on an empty

@@ -123,8 +123,8 @@ fn sweep(
         let brings =
             |i: usize| sampling * power(1.0 - ratio[i], k) * source.moment(k, v[i], &at_nodes[i]);
         let f: Vec<f64> = (0..n).map(brings).collect();
-        let (found, begin) = mesh.backward(panel, &rate, &f, after[k - 1]);
-        at_nodes.iter_mut().zip(found).for_each(|(node, found)| node[k - 1] = found);
+        let (result, begin) = mesh.backward(panel, &rate, &f, after[k - 1]);
+        at_nodes.iter_mut().zip(result).for_each(|(node, result)| node[k - 1] = result);
         before[k - 1] = begin;
     }
     before

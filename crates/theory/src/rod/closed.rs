@@ -50,9 +50,9 @@ pub fn leaving(depth: f64, albedo: f64, forward: f64) -> Option<[f64; 2]> {
     if depth >= critical(albedo, forward) {
         return None;
     }
-    let found = continued(depth, Complex64::from(albedo), forward).map(|x| x.re);
+    let result = continued(depth, Complex64::from(albedo), forward).map(|x| x.re);
     // Infinite also beyond the range of doubles.
-    found.iter().all(|value| value.is_finite()).then_some(found)
+    result.iter().all(|value| value.is_finite()).then_some(result)
 }
 
 /// Bounds on the relative rounding of R and T, for an albedo with a relative error of δ = `of_albedo` ε.
@@ -75,15 +75,15 @@ fn rounding(depth: f64, albedo: f64, forward: f64, of_albedo: f64) -> [f64; 2] {
         return [terms; 2];
     }
     let values = here.leaving().map(|x| x.re);
-    let least = of_albedo * f64::EPSILON;
+    let minimum = of_albedo * f64::EPSILON;
     let mut step = STEP;
-    while step >= least {
+    while step >= minimum {
         let near = leaving(depth, albedo * (1.0 + step), forward);
         if let Some(near) = near.filter(|near| (0..2).all(|i| near[i] <= 2.0 * values[i])) {
             return std::array::from_fn(|i| {
                 let growth =
                     if values[i] > 0.0 { (near[i] / values[i] - 1.0).max(0.0) } else { 0.0 };
-                terms + least * growth / step
+                terms + minimum * growth / step
             });
         }
         step *= 0.25;
@@ -203,15 +203,15 @@ mod tests {
     #[test]
     fn rods_of_any_length_state_what_they_lose() {
         let all = [(&RODS[..], 1e-13), (&NEARLY_CRITICAL[..], 4096.0 * f64::EPSILON)];
-        for (rods, most) in all {
+        for (rods, maximum) in all {
             for &([depth, albedo, forward], exact) in rods {
-                let found = leaving(depth, albedo, forward).expect("finite");
+                let result = leaving(depth, albedo, forward).expect("finite");
                 let rounding = rounding(depth, albedo, forward, 16.0);
                 let distance = 1.0 - depth / critical(albedo, forward);
-                for ((found, exact), rounding) in found.iter().zip(exact).zip(rounding) {
-                    let off = (found / exact - 1.0).abs();
+                for ((result, exact), rounding) in result.iter().zip(exact).zip(rounding) {
+                    let off = (result / exact - 1.0).abs();
                     let context = format!("{depth}, {albedo}: {off:e}, {rounding:e}");
-                    assert!(off <= rounding && rounding * distance < most, "{context}");
+                    assert!(off <= rounding && rounding * distance < maximum, "{context}");
                 }
             }
         }

@@ -83,18 +83,18 @@ impl Line {
     }
 
     fn joined(&self, rates: &Rates<'_>) -> Option<Layers> {
-        let mut found = Layers { layers: Vec::new(), beyond: vec![0.0; self.panels.len() + 1] };
+        let mut result = Layers { layers: Vec::new(), beyond: vec![0.0; self.panels.len() + 1] };
         let mut last = None;
         for panel in 0..self.panels.len() {
             let here = self.coefficients(panel, rates);
-            let same = found.layers.last().filter(|_| last == Some(here)).cloned();
-            found.layers.push(same.or_else(|| self.layer(here))?);
+            let same = result.layers.last().filter(|_| last == Some(here)).cloned();
+            result.layers.push(same.or_else(|| self.layer(here))?);
             last = Some(here);
         }
-        for (i, layer) in found.layers.iter().enumerate().rev() {
-            found.beyond[i] = layer.ends().seen(found.beyond[i + 1])?;
+        for (i, layer) in result.layers.iter().enumerate().rev() {
+            result.beyond[i] = layer.ends().seen(result.beyond[i + 1])?;
         }
-        Some(found)
+        Some(result)
     }
 
     /// The first panel in which the echoes of the k-th moment diverge, and the reflection of all before it.

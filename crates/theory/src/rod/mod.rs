@@ -97,16 +97,16 @@ pub fn has_variance(
 ) -> Result<(), NoVariance> {
     let walk = RodWalk::new(mesh, rod, Some(sampling), rule);
     walk.exists(2)?;
-    let Some(found) = powers(&walk, &rod.channels, 2) else {
+    let Some(result) = powers(&walk, &rod.channels, 2) else {
         return Err(NoVariance::Unresolved(f64::INFINITY));
     };
     let is_faint = |known: &Known| known.value * f64::EPSILON < f64::MIN_POSITIVE;
     // Nothing at all is exact.
     let underflows = |(known, truth): (&Known, &Known)| is_faint(known) && truth.value > 0.0;
-    if found.iter().any(is_faint) && found.iter().zip(&truth_or_nan(mesh, rod)).any(underflows) {
+    if result.iter().any(is_faint) && result.iter().zip(&truth_or_nan(mesh, rod)).any(underflows) {
         return Err(NoVariance::Underflows);
     }
-    match blur(&found) {
+    match blur(&result) {
         blur if blur <= RESOLVED => Ok(()),
         blur => Err(NoVariance::Unresolved(blur)),
     }
@@ -134,10 +134,10 @@ pub fn predict(
     with_distributions: bool,
 ) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let found = SolvedRod::of(&RodWalk::new(mesh, rod, Some(sampling), rule), with_distributions);
+    let result = SolvedRod::of(&RodWalk::new(mesh, rod, Some(sampling), rule), with_distributions);
     let channel = |(index, (quantity, &truth)): (usize, (&RodQuantity, &Known))| {
-        let channel = match &found {
-            Some(found) => found.raw[index].channel(truth, RESOLVED),
+        let channel = match &result {
+            Some(result) => result.raw[index].channel(truth, RESOLVED),
             None => Channel::unbiased(truth, None, Tails::LIGHT),
         };
         Channel { name: quantity.name(), ..channel }
@@ -145,10 +145,10 @@ pub fn predict(
     let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
-        lookups: found.as_ref().map(|found| CountDistribution::of_factorial(found.lookups)),
-        covariances: found
+        lookups: result.as_ref().map(|result| CountDistribution::of_factorial(result.lookups)),
+        covariances: result
             .as_ref()
-            .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),
+            .map_or_else(Vec::new, |result| covariances(&rod.channels, &truth, result)),
         ..Prediction::default()
     }
 }
@@ -209,19 +209,19 @@ impl SolvedRod {
 }
 
 /// The largest relative error of some moments.
-fn blur(found: &[Known]) -> f64 {
-    let worst = |most: f64, blur: f64| if blur <= most { most } else { blur };
-    found.iter().map(|known| known.relative_error()).fold(0.0, worst)
+fn blur(result: &[Known]) -> f64 {
+    let worst = |maximum: f64, blur: f64| if blur <= maximum { maximum } else { blur };
+    result.iter().map(|known| known.relative_error()).fold(0.0, worst)
 }
 
 /// The covariances of adjacent channels. A particle leaves at one end and after one number of scatterings: the
 /// products of such channels are 0.
-fn covariances(channels: &[RodQuantity], truth: &[Known], found: &SolvedRod) -> Vec<Covariance> {
+fn covariances(channels: &[RodQuantity], truth: &[Known], result: &SolvedRod) -> Vec<Covariance> {
     let mut covariances = Vec::new();
     for (first, pair) in channels.windows(2).enumerate() {
         let means = [truth[first].value, truth[first + 1].value];
-        let squares = [first, first + 1].map(|channel| found.raw[channel].second().value);
-        let joint = match (pair, found.joint) {
+        let squares = [first, first + 1].map(|channel| result.raw[channel].second().value);
+        let joint = match (pair, result.joint) {
             ([RodQuantity::Absorbed, _], Some(joint)) => joint,
             ([RodQuantity::Absorbed, _], None)
             | ([_, RodQuantity::Absorbed] | [RodQuantity::Flux(_), _], _) => continue,

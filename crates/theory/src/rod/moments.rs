@@ -80,12 +80,12 @@ fn score_times(
         Some((ends, k)) => (line.flow(k)?.solve(&nothing, ends), k),
         None => (line.one(), 0),
     };
-    let mut found = vec![first];
+    let mut result = vec![first];
     for power in 1..=j {
         let source = |at: usize, node: &RodPoint| {
             let mut sum = [0.0; 2];
             let mut ways = 1.0;
-            for (i, worth) in (0_i32..).zip(&found) {
+            for (i, worth) in (0_i32..).zip(&result) {
                 let left = power - i;
                 let share = ways * score(node, left);
                 let order = i + k;
@@ -98,19 +98,19 @@ fn score_times(
             sum
         };
         let worth = line.flow(power + k)?.solve(&source, [0.0; 2]);
-        found.push(worth);
+        result.push(worth);
     }
-    Some(found)
+    Some(result)
 }
 
 /// See [`Joint`]; what leaves at the beginning is reflected.
 pub fn joint(line: &Line) -> Option<Joint> {
     let mut joint = [[0.0; 2]; 2];
     for k in [1, 2] {
-        let found = score_times(line, &absorbed, 2, Some((BEGINNING, k)))?;
+        let result = score_times(line, &absorbed, 2, Some((BEGINNING, k)))?;
         let place = usize::from(k == 2);
-        joint[0][place] = found[1].entering;
-        joint[1][place] = found[2].entering;
+        joint[0][place] = result[1].entering;
+        joint[1][place] = result[2].entering;
     }
     Some(joint)
 }
@@ -124,15 +124,15 @@ pub fn lookups(line: &Line) -> Option<[f64; 4]> {
 /// n = 0 … 4. The further ones add `σ̂ S₀ Σⱼ (n over j) E[K(K − 1)…(K − j + 1)]` times the moment n − j to a source.
 pub fn lookups_with(line: &Line, further: &dyn Fn(usize) -> [f64; 5]) -> Option<[f64; 4]> {
     let flow = line.flow(0)?;
-    let mut found: Vec<Importance> = Vec::new();
+    let mut result: Vec<Importance> = Vec::new();
     for n in 1..=4_usize {
         let source = |at: usize, node: &RodPoint| {
-            let worth = |m: usize| if m == 0 { [1.0; 2] } else { found[m - 1].at(at) };
+            let worth = |m: usize| if m == 0 { [1.0; 2] } else { result[m - 1].at(at) };
             // With j or more of the further lookups, and the others afterwards.
             let further = further(at);
-            let scattered = |m: usize, least: usize| {
+            let scattered = |m: usize, minimum: usize| {
                 let mut sum = [0.0; 2];
-                for (j, moment) in further.iter().enumerate().take(m + 1).skip(least) {
+                for (j, moment) in further.iter().enumerate().take(m + 1).skip(minimum) {
                     let share = binomial(m, j) * moment;
                     let spread = node.spread(worth(m - j));
                     sum = [sum[0] + share * spread[0], sum[1] + share * spread[1]];
@@ -146,7 +146,7 @@ pub fn lookups_with(line: &Line, further: &dyn Fn(usize) -> [f64; 5]) -> Option<
                 node.sampling * (kernel.scattered * own[d] + n as f64 * later)
             })
         };
-        found.push(flow.solve(&source, [0.0; 2]));
+        result.push(flow.solve(&source, [0.0; 2]));
     }
-    Some(std::array::from_fn(|n| found[n].entering))
+    Some(std::array::from_fn(|n| result[n].entering))
 }

@@ -60,8 +60,8 @@ impl BodyEnergies for Rods<'_> {
     }
 
     fn orders(&self) -> Option<Orders> {
-        let (found, each) = orders(self.depth.value, self.rod.forward)?;
-        Some(Orders { found, error: ROUNDING, each, blur: self.depth.error })
+        let (result, each) = orders(self.depth.value, self.rod.forward)?;
+        Some(Orders { result, error: ROUNDING, each, blur: self.depth.error })
     }
 
     fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
@@ -97,11 +97,11 @@ pub fn orders_above(depth: f64, albedo: f64, forward: f64, rare: f64) -> usize {
         let size: f64 = leaving(depth, larger, forward)?.iter().sum();
         size.is_finite().then(|| (size.max(1.0) / rare).ln() / (larger / albedo).ln())
     });
-    let least = bounds.filter(|orders| *orders >= 0.0).fold(f64::INFINITY, f64::min);
+    let minimum = bounds.filter(|orders| *orders >= 0.0).fold(f64::INFINITY, f64::min);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     // Beyond the largest integer it saturates.
-    let least = least.ceil() as usize;
-    least.saturating_add(8)
+    let minimum = minimum.ceil() as usize;
+    minimum.saturating_add(8)
 }
 
 /// The probabilities to leave a rod without absorption after r scatterings, and a bound on the absolute error of
@@ -127,6 +127,6 @@ fn orders(depth: f64, forward: f64) -> Option<(Vec<[f64; 2]>, f64)> {
         }
         sum.map(|sum| (sum / count as f64).max(0.0))
     };
-    let largest = half.iter().flatten().fold(0.0, |most: f64, value| most.max(value.norm()));
+    let largest = half.iter().flatten().fold(0.0, |maximum: f64, value| maximum.max(value.norm()));
     Some(((0..count).map(order).collect(), OF_ORDERS * f64::EPSILON * largest + RARE))
 }

@@ -173,13 +173,13 @@ impl<'a> RodWalk<'a> {
                     fastest = if rate <= fastest { fastest } else { rate };
                 }
             }
-            let wanted = (panel.span.length() * fastest / THICKNESS).ceil().max(1.0);
-            sum += wanted;
+            let required = (panel.span.length() * fastest / THICKNESS).ceil().max(1.0);
+            sum += required;
             if fastest.is_nan() || sum > MAX_PANELS {
                 return None;
             }
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MAX_PANELS
-            let count = wanted as u32 * finer;
+            let count = required as u32 * finer;
             let at =
                 |i: u32| panel.span.from + panel.span.length() * (f64::from(i) / f64::from(count));
             let width = panel.span.length() / f64::from(count);
@@ -229,10 +229,10 @@ impl<'a> RodWalk<'a> {
     /// The error is the difference to the numbers of panels twice as wide, on which what leaves a panel is increased by
     /// more than rounding errors. It grows as they do next to a divergence.
     pub fn known(&self, highest: i32, numbers: &LineNumbers<'_>) -> Option<Vec<Known>> {
-        let found = numbers(&self.line(highest, 2, 0.0)?)?;
+        let result = numbers(&self.line(highest, 2, 0.0)?)?;
         let raised = numbers(&self.line(highest, 1, ROUNDING)?);
-        let raised = raised.unwrap_or_else(|| vec![f64::INFINITY; found.len()]);
-        let pairs = found.into_iter().zip(raised);
+        let raised = raised.unwrap_or_else(|| vec![f64::INFINITY; result.len()]);
+        let pairs = result.into_iter().zip(raised);
         let known = |(x, y): (f64, f64)| Known::of_resolutions(x, y).blurred(OF_PATH * x.abs());
         Some(pairs.map(known).collect())
     }
@@ -308,11 +308,11 @@ mod tests {
         let walk =
             RodWalk::new(&Mesh::new(medium), &rod, Some(&sampling), ParticleRule::NonTerminating);
         let known = walk.known(4, &|line| {
-            let mut found = moments::lookups(line)?[..2].to_vec();
-            found.push(moments::power(line, RodQuantity::Reflected, 1.0, 2)?);
-            found.push(moments::power(line, RodQuantity::Transmitted, 1.0, 4)?);
-            found.push(moments::power(line, RodQuantity::Absorbed, 1.0, 1)?);
-            Some(found)
+            let mut result = moments::lookups(line)?[..2].to_vec();
+            result.push(moments::power(line, RodQuantity::Reflected, 1.0, 2)?);
+            result.push(moments::power(line, RodQuantity::Transmitted, 1.0, 4)?);
+            result.push(moments::power(line, RodQuantity::Absorbed, 1.0, 1)?);
+            Some(result)
         });
         let expected = romberg(&|steps| {
             let width = 3.0 / steps as f64;
@@ -336,11 +336,11 @@ mod tests {
             let [reflected, transmitted] = [leaving(2, [1.0, 0.0]), leaving(4, [0.0, 1.0])];
             vec![mean, counts(&second).1, reflected, transmitted, energy]
         });
-        for (Known { value: found, error, .. }, expected) in
+        for (Known { value: result, error, .. }, expected) in
             known.expect("known").into_iter().zip(expected)
         {
-            let off = (found / expected - 1.0).abs();
-            assert!(off < 2e-12 && error < 1e-12 * found, "{found} ± {error:e}: off by {off:e}");
+            let off = (result / expected - 1.0).abs();
+            assert!(off < 2e-12 && error < 1e-12 * result, "{result} ± {error:e}: off by {off:e}");
         }
     }
 
@@ -368,8 +368,8 @@ mod tests {
             crate::rod::has_variance(&Mesh::new(medium), &rod, &sampling, rule)
         };
         for longer in [1e-12, 1e-6, 0.1, 3.0] {
-            let found = has_variance(critical * (1.0 + longer));
-            let Err(NoVariance::Diverges(at)) = found else { panic!("{longer}: {found:?}") };
+            let result = has_variance(critical * (1.0 + longer));
+            let Err(NoVariance::Diverges(at)) = result else { panic!("{longer}: {result:?}") };
             assert!((at / critical - 1.0).abs() < 1e-13, "{longer}: {at} for {critical}");
         }
         for shorter in [1e-12, 1e-6, 0.1] {

@@ -45,7 +45,7 @@ impl Collisions<'_> {
             density: &|node| self.density(node),
             gain: &|node| self.worth(node),
             blur: &|node| node.error[1],
-            found: Some(self),
+            by_collisions: Some(self),
             weighted: None,
         };
         TechniqueMoments::of(scene, &technique, self.sampling.knots().to_vec())

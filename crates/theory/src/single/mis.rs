@@ -101,9 +101,11 @@ impl Mis<'_> {
         };
         let blur = |node: &RayNode| 2.0 * (node.error[1] + DENSITY);
         let (blur, weighted): (&dyn Fn(&RayNode) -> f64, _) = (&blur, None);
-        let first = ScoredDensity { density: &source, gain: &gain, blur, found: None, weighted };
-        let found = Some(&self.collisions);
-        let second = ScoredDensity { density: &collision, gain: &walked, blur, found, weighted };
+        let first =
+            ScoredDensity { density: &source, gain: &gain, blur, by_collisions: None, weighted };
+        let by_collisions = Some(&self.collisions);
+        let second =
+            ScoredDensity { density: &collision, gain: &walked, blur, by_collisions, weighted };
         [first, second].map(|technique| self.points_of(&technique))
     }
 
@@ -115,19 +117,19 @@ impl Mis<'_> {
             density: &|node| self.source(node),
             gain: &worth,
             blur: &|_| DENSITY,
-            found: None,
+            by_collisions: None,
             weighted: Some(&by_point),
         };
         let by_collision = |node: &RayNode| {
             // Of all walks through σ̂ only those without a real collision reach the point.
-            let found = nulls.weights(Made::ByCollision, node.s, ratio(node));
-            found.map(|moments| moments.map(|moment| moment / node.transmittance))
+            let result = nulls.weights(Made::ByCollision, node.s, ratio(node));
+            result.map(|moments| moments.map(|moment| moment / node.transmittance))
         };
         let second = ScoredDensity {
             density: &|node| self.collisions.density(node),
             gain: &worth,
             blur: &|node| node.error[1],
-            found: Some(&self.collisions),
+            by_collisions: Some(&self.collisions),
             weighted: Some(&by_collision),
         };
         [first, second].map(|technique| self.points_of(&technique))

@@ -77,7 +77,7 @@ impl<'a> NullPaths<'a> {
                 }
             });
         }
-        let largest = table.whole().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let largest = table.whole().iter().fold(0.0, |maximum: f64, x| maximum.max(x.abs()));
         if missed > 0.0 {
             self.off += missed / largest;
         }
@@ -129,9 +129,9 @@ impl<'a> NullPaths<'a> {
         let off = f64::EPSILON * (ROUNDINGS + size) + self.off * size;
         let moments = self.contour.moments(line, &integrals, 1.0);
         let scores = self.contour.scores(line, ratio, &moments, off);
-        [scores.means, scores.errors].map(|found| {
+        [scores.means, scores.errors].map(|result| {
             let mut row = [f64::NAN; POWERS.len()];
-            row[..MOMENTS].copy_from_slice(&found[made as usize][1..=MOMENTS]);
+            row[..MOMENTS].copy_from_slice(&result[made as usize][1..=MOMENTS]);
             row
         })
     }

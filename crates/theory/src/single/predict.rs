@@ -26,7 +26,7 @@ pub struct ScoredDensity<'a> {
     pub blur: &'a dyn Fn(&RayNode) -> f64,
     /// The delta tracking that found the point, if it did. The transmittance from the origin is then no factor of
     /// the draw, and the lookups are those of the tracking.
-    pub found: Option<&'a Collisions<'a>>,
+    pub by_collisions: Option<&'a Collisions<'a>>,
     /// Substitute for the moments of the transmittance from the origin, where weights depend on the walk.
     pub weighted: Option<&'a Weighted<'a>>,
 }
@@ -36,7 +36,7 @@ impl ScoredDensity<'_> {
     fn camera(&self, node: &RayNode) -> [PerPower; 2] {
         match self.weighted {
             Some(weighted) => weighted(node),
-            None if self.found.is_some() => [[1.0; 5], [0.0; 5]],
+            None if self.by_collisions.is_some() => [[1.0; 5], [0.0; 5]],
             None => [node.camera.powers, node.camera.powers.map(|power| power * node.camera.error)],
         }
     }
@@ -49,10 +49,10 @@ pub struct TechniqueMoments {
     pub truth: Known,
     /// Raw moments of the draw.
     pub raw: RawMoments,
-    /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not computed.
+    /// `E[(N − minimum)^k]`, k = 0 … 4; `None` where it is not computed.
     pub lookups: Option<Raw>,
     /// Number of lookups of every draw, kept apart: beside it rare lookups would lose their digits.
-    pub least: f64,
+    pub minimum: f64,
     /// A relative error bound of the mean lookups.
     pub counted: f64,
     /// Mean number of lookups of shadow rays; `None` where it is not computed.
@@ -72,7 +72,7 @@ impl TechniqueMoments {
         let mut parts = [MOMENT; 14];
         parts[5..9].fill(LOOKUPS);
         parts[9..].fill(f64::INFINITY);
-        let found = scene.integrate(parts, kinks, &|node| {
+        let result = scene.integrate(parts, kinks, &|node| {
             let density = (technique.density)(node);
             if density <= 0.0 {
                 return [0.0; 14];
@@ -81,7 +81,7 @@ impl TechniqueMoments {
             let [camera, errors] = technique.camera(node);
             let shadow = node.shadow.powers;
             let factor = node.error[0] + (technique.blur)(node) + DENSITY;
-            let (lookups, shadow_lookups) = match technique.found {
+            let (lookups, shadow_lookups) = match technique.by_collisions {
                 Some(collisions) => (collisions.lookups_at(node), node.shadow.lookups[1]),
                 None => (node.lookups(), node.shadow_lookups()),
             };
@@ -98,23 +98,25 @@ impl TechniqueMoments {
             }
             row
         });
-        let [p1, p2, p3, p4, p8, n1, n2, n3, n4, r1, r2, r3, r4, cast] = found.value;
-        let none = technique.found.map_or([0.0; 5], Collisions::lookups_of_escape);
-        let off =
-            found.error[..4].iter().zip([r1, r2, r3, r4]).map(|(apart, rounding)| apart + rounding);
+        let [p1, p2, p3, p4, p8, n1, n2, n3, n4, r1, r2, r3, r4, cast] = result.value;
+        let none = technique.by_collisions.map_or([0.0; 5], Collisions::lookups_of_escape);
+        let off = result.error[..4]
+            .iter()
+            .zip([r1, r2, r3, r4])
+            .map(|(apart, rounding)| apart + rounding);
         let mut raw = RawMoments([p1, p2, p3, p4, p8].map(|power| Known::estimated(power, 0.0)));
         for (known, off) in raw.0.iter_mut().zip(off) {
             known.error = off.max(SUMS * known.value.abs());
         }
         let lookups = [1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]];
         // A walk that ends at its point may end before.
-        let least = if technique.found.is_some() { 0.0 } else { 1.0 };
+        let minimum = if technique.by_collisions.is_some() { 0.0 } else { 1.0 };
         Self {
             truth: scene.radiance(),
             raw,
             lookups: Some(lookups),
-            least,
-            counted: SUMS + found.error[5] / (least + lookups[1]),
+            minimum,
+            counted: SUMS + result.error[5] / (minimum + lookups[1]),
             shadow_lookups: Some(cast),
         }
     }
@@ -125,7 +127,7 @@ impl TechniqueMoments {
         Self {
             truth: self.truth,
             raw: self.raw.plus(&other.raw),
-            least: self.least + other.least,
+            minimum: self.minimum + other.minimum,
             counted: self.counted.max(other.counted),
             lookups: self.lookups.zip(other.lookups).map(|(a, b)| added(a, b)),
             shadow_lookups: self.shadow_lookups.zip(other.shadow_lookups).map(|(a, b)| a + b),
@@ -136,15 +138,15 @@ impl TechniqueMoments {
     #[must_use]
     pub fn either(&self, other: &Self) -> Self {
         let lookups = |one: &Self| {
-            let least = one.least;
-            let always = [1.0, least, least.powi(2), least.powi(3), least.powi(4)];
+            let minimum = one.minimum;
+            let always = [1.0, minimum, minimum.powi(2), minimum.powi(3), minimum.powi(4)];
             one.lookups.map(|more| added(always, more))
         };
         let half = |a: f64, b: f64| 0.5 * (a + b);
         Self {
             truth: self.truth,
             raw: self.raw.either(&other.raw),
-            least: 0.0,
+            minimum: 0.0,
             counted: self.counted.max(other.counted),
             lookups: lookups(self)
                 .zip(lookups(other))
@@ -165,8 +167,8 @@ impl TechniqueMoments {
         // The rarity of the draws that make the variance is not computed.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio };
         let channels = vec![Channel::unbiased(self.truth, moments, tails)];
-        let law = |raw| CountDistribution::of_raw(self.least, raw, self.counted);
-        let (lookups, shadow_lookups) = (self.lookups.map(law), self.shadow_lookups);
+        let distribution = |raw| CountDistribution::of_raw(self.minimum, raw, self.counted);
+        let (lookups, shadow_lookups) = (self.lookups.map(distribution), self.shadow_lookups);
         Prediction { channels, lookups, shadow_lookups, ..Prediction::default() }
     }
 }
@@ -181,7 +183,7 @@ mod tests {
             truth: Known::exact(a),
             raw: RawMoments::estimated([a, b, c, d, f64::NAN], [1e-14; 5]),
             lookups: Some([1.0, 0.5, 0.5, 0.5, 0.5]),
-            least: 0.0,
+            minimum: 0.0,
             counted: 1e-14,
             shadow_lookups: None,
         }
@@ -205,7 +207,7 @@ mod tests {
     fn either_of_two_coins_is_one_of_twice_the_worth() {
         // 0, or 2 with probability ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
         let coin = points([0.5; 4]);
-        let other = TechniqueMoments { least: 1.0, ..coin };
+        let other = TechniqueMoments { minimum: 1.0, ..coin };
         let prediction = coin.either(&other).prediction();
         let moments = prediction.channels[0].moments.expect("moments");
         assert!((moments.scale - 1.0).abs() < 1e-15 && (moments.variance() - 1.0).abs() < 1e-15);

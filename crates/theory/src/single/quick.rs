@@ -62,10 +62,10 @@ mod tests {
         // 30-digit arithmetic.
         let exact = 1.715_523_536_208_36e-4;
         for panels in [8, 16, 32] {
-            let found = radiance(&problem(), panels);
-            let off = (found.value - exact).abs();
+            let result = radiance(&problem(), panels);
+            let off = (result.value - exact).abs();
             assert!(panels < 32 || off <= 1e-12 * exact, "{off:e}");
-            assert!(off <= found.error + 1e-13 * exact, "{off:e} and {:e}", found.error);
+            assert!(off <= result.error + 1e-13 * exact, "{off:e} and {:e}", result.error);
         }
     }
 

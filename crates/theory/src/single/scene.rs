@@ -203,15 +203,15 @@ impl<'a> RayScene<'a> {
                 [medium.extinction(s) * source * (-(before + beyond)).exp()]
             };
             let among = shadows.as_ref().map_or(Vec::new(), |shadows| self.places(shadows));
-            let mut found = self.over([RADIANCE], among, &|place| gathered(place, Among::All));
+            let mut result = self.over([RADIANCE], among, &|place| gathered(place, Among::All));
             if shadows.is_some() {
-                self.compare(&mut found, &|place| gathered(place, Among::Half));
+                self.compare(&mut result, &|place| gathered(place, Among::Half));
             }
-            let [value] = found.value;
+            let [value] = result.value;
             // The optical depths add their own rounding, and so do positions next to the light.
             let depths = 2.0 * medium.optical_depth(medium.support()).error;
             let places = 0.25 * f64::EPSILON * problem.foot().abs() / problem.distance();
-            Known::estimated(value, found.error[0] + (ROUNDING + depths + places) * value.abs())
+            Known::estimated(value, result.error[0] + (ROUNDING + depths + places) * value.abs())
         })
     }
 
@@ -254,11 +254,11 @@ impl<'a> RayScene<'a> {
     ) -> Integral<N> {
         cuts.extend(self.camera.cuts());
         cuts.extend(self.shadows.iter().flat_map(|shadows| self.places(shadows)));
-        let mut found = self.over(parts, cuts, &|place| f(&self.node(place)));
+        let mut result = self.over(parts, cuts, &|place| f(&self.node(place)));
         if self.shadows.is_some() {
-            self.compare(&mut found, &|place| f(&self.node_among(place, Among::Half)));
+            self.compare(&mut result, &|place| f(&self.node_among(place, Among::Half)));
         }
-        found
+        result
     }
 
     /// The places of shadow rays that are interpolated.
@@ -269,14 +269,14 @@ impl<'a> RayScene<'a> {
     /// Adds the difference to the integral by half of the shadow rays to the errors.
     fn compare<const N: usize>(
         &self,
-        found: &mut Integral<N>,
+        result: &mut Integral<N>,
         f: &dyn Fn(StretchedPlace) -> [f64; N],
     ) {
         let mut sums = [Sum::default(); N];
-        for &x in &found.panels {
+        for &x in &result.panels {
             sums.iter_mut().zip(self.panel(x, f)).for_each(|(sum, value)| sum.add(value));
         }
-        for ((error, value), sum) in found.error.iter_mut().zip(found.value).zip(sums) {
+        for ((error, value), sum) in result.error.iter_mut().zip(result.value).zip(sums) {
             *error += (value - sum.value()).abs();
         }
     }
@@ -292,15 +292,15 @@ impl<'a> RayScene<'a> {
             return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };
         }
         let ends = self.ends(cuts);
-        let least = if self.is_thinned { UNRESOLVED } else { 0.0 };
+        let minimum = if self.is_thinned { UNRESOLVED } else { 0.0 };
         let is_fine = |here: &Halved<N>, scale: &[f64; N]| {
             let change = here.change();
-            !(0..N).any(|i| change[i].abs() > parts[i].max(least) * scale[i])
+            !(0..N).any(|i| change[i].abs() > parts[i].max(minimum) * scale[i])
         };
-        let found = halve(&mut Span::between(&ends), LIMITS, &|x| self.panel(x, f), &is_fine);
+        let result = halve(&mut Span::between(&ends), LIMITS, &|x| self.panel(x, f), &is_fine);
         let [mut sums, mut signed] = [[Sum::default(); N]; 2];
         let [mut error, mut squares] = [[0.0; N]; 2];
-        for here in &found {
+        for here in &result {
             let change = here.change();
             for i in 0..N {
                 here.halves.iter().for_each(|half| sums[i].add(half[i]));
@@ -314,7 +314,7 @@ impl<'a> RayScene<'a> {
             let of = |i: usize| signed[i].value().abs() + 2.0 * f64::sqrt(squares[i]);
             error = std::array::from_fn(of);
         }
-        let panels = found.iter().flat_map(|here| here.span.halves()).collect();
+        let panels = result.iter().flat_map(|here| here.span.halves()).collect();
         Integral { value: sums.map(|sum| sum.value()), error, panels }
     }
 }

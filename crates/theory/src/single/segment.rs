@@ -61,14 +61,14 @@ pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
 /// Losses of all [`POWERS`], with common sums.
 #[inline]
 pub fn losses(control: f64, residual: f64, weight: f64) -> PerPower {
-    let (mut k, mut sum, mut found) = (0, 0.0, [0.0; POWERS.len()]);
+    let (mut k, mut sum, mut result) = (0, 0.0, [0.0; POWERS.len()]);
     for (i, power) in POWERS.into_iter().enumerate() {
         while k < power {
             (k, sum) = (k + 1, sum * weight + 1.0);
         }
-        found[i] = f64::from(power) * control + residual * sum;
+        result[i] = f64::from(power) * control + residual * sum;
     }
-    found
+    result
 }
 
 /// Sum of the absolute values of the terms of [`loss`] for k = 4: an upper bound for smaller k, too.
@@ -106,12 +106,12 @@ impl Segment {
     /// 1 with probability `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
     /// `E[N (N − 1) … (N − k + 1)]`, see [`crate::ray::survival`].
     pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
-        let chance = (-depth.value).exp();
+        let probability = (-depth.value).exp();
         let lookups = raw::of_factorial(factorial);
         // Walks that come through make a Poisson number of null collisions.
-        let through = poisson(flown - depth.value).map(|moment| chance * moment);
+        let through = poisson(flown - depth.value).map(|moment| probability * moment);
         let (error, size) = (depth.error + f64::EPSILON, depth.value);
-        Self { powers: [chance; POWERS.len()], lookups, through, error, size }
+        Self { powers: [probability; POWERS.len()], lookups, through, error, size }
     }
 
     /// The transmittance of a shadow ray.
@@ -130,7 +130,7 @@ impl Segment {
                 };
                 let (value, apart) = along(medium, rule, lost);
                 let [_, b, c, d, e, size] = value;
-                let apart = apart[1..4].iter().fold(0.0, |most: f64, &apart| most.max(apart));
+                let apart = apart[1..4].iter().fold(0.0, |maximum: f64, &apart| maximum.max(apart));
                 let error = [rounding(size) + apart.max(4.0 * depth.error), size];
                 let exponents = [depth.value, b, c, d, e];
                 Self::product(exponents, sampling * support.length(), error)
@@ -165,13 +165,13 @@ const FEW: usize = 32;
 fn counted(medium: &Medium, rule: &GaussLegendre, sampling: f64) -> [f64; 4] {
     let support = medium.support();
     let (ends, _) = thinned(support.cut(medium.breaks()));
-    let (mut found, rates) = (Survival::default(), vec![sampling; rule.nodes.len()]);
+    let (mut result, rates) = (Survival::default(), vec![sampling; rule.nodes.len()]);
     for span in Span::between(&ends).flat_map(Span::halves) {
         let sigma = medium.extinctions(&rule.nodes_on(span));
         let nulls: Vec<f64> = sigma.iter().map(|sigma| sampling - sigma).collect();
-        found.add(rule, span.length(), [&rates, &sigma, &nulls]);
+        result.add(rule, span.length(), [&rates, &sigma, &nulls]);
     }
-    found.factorial()
+    result.factorial()
 }
 
 /// `∫ f(t, σ_t)` over the support of a medium, and the difference of two resolutions: Gauss panels between its
@@ -230,10 +230,10 @@ mod tests {
             let together = losses(control, residual, weight);
             for (k, of_all) in POWERS.into_iter().zip(together) {
                 let apart = f64::from(k) * control + (1.0 - weight.powi(k));
-                let found = loss(k, control, residual, weight);
-                assert!(found.to_bits() == of_all.to_bits(), "{k}");
-                assert!((found - apart).abs() < 1e-14 * (1.0 + weight.powi(k).abs()), "{k}");
-                assert!(k > 4 || found.abs() <= size(control, residual, weight));
+                let result = loss(k, control, residual, weight);
+                assert!(result.to_bits() == of_all.to_bits(), "{k}");
+                assert!((result - apart).abs() < 1e-14 * (1.0 + weight.powi(k).abs()), "{k}");
+                assert!(k > 4 || result.abs() <= size(control, residual, weight));
             }
         }
     }

@@ -88,12 +88,12 @@ impl Shadows {
             -t * (t - 1.0) * (t - 3.0) / 2.0,
             t * (t - 1.0) * (t - 2.0) / 6.0,
         ];
-        let mut found = [0.0; COUNT];
+        let mut result = [0.0; COUNT];
         for (i, weight) in weights.into_iter().enumerate() {
             let row = &self.rows[(first + i) * stride];
-            found.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
+            result.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
         }
-        segment(found)
+        segment(result)
     }
 }
 
@@ -205,7 +205,7 @@ mod tests {
         let camera = Camera::new(&mesh, &sampling, &control, CameraTracking::Exact);
         let scene = RayScene::new(&problem, camera, Tracking::Exact);
         let scattered = |node: &RayNode| [node.extinction * node.transmittance * node.source];
-        let found = scene.integrate([1e-9], Vec::new(), &scattered);
+        let result = scene.integrate([1e-9], Vec::new(), &scattered);
         let piece = |ends: &[f64]| {
             let rule = scene.rule();
             rule.integrate(ends[0], ends[1], |s| {
@@ -214,8 +214,8 @@ mod tests {
             })
         };
         let exact: f64 = medium.support().cut(medium.breaks()).windows(2).map(piece).sum();
-        let off = (found.value[0] - exact).abs();
-        assert!(off <= found.error[0] && found.error[0] < 1e-4 * exact, "{off:e}, {exact:e}");
+        let off = (result.value[0] - exact).abs();
+        assert!(off <= result.error[0] && result.error[0] < 1e-4 * exact, "{off:e}, {exact:e}");
     }
 
     #[test]
@@ -228,9 +228,9 @@ mod tests {
         assert_eq!(shadows.rows.len(), 97);
         for x in [-1.0, -0.99, 0.123, 1.5, 1.999, 2.0] {
             for among in [Among::All, Among::Half] {
-                let found = shadows.at(x, among);
-                assert!((found.powers[0] / of(x).powers[0] - 1.0).abs() < 1e-13, "{x}");
-                assert_eq!(found.lookups, [1.0, 0.0, 0.0, 0.0, 0.0]);
+                let result = shadows.at(x, among);
+                assert!((result.powers[0] / of(x).powers[0] - 1.0).abs() < 1e-13, "{x}");
+                assert_eq!(result.lookups, [1.0, 0.0, 0.0, 0.0, 0.0]);
             }
         }
     }

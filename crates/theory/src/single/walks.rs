@@ -81,15 +81,15 @@ fn scattered(scene: &RayScene, at: impl Fn(&RayNode) -> ([f64; 4], [f64; 4], f64
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);
     parts[8..].fill(f64::INFINITY);
-    let found = scene.integrate(parts, Vec::new(), &|node| {
+    let result = scene.integrate(parts, Vec::new(), &|node| {
         let (powers, lookups, blur) = at(node);
         let rows = [powers, lookups, powers.map(|power| power.abs() * blur)];
         std::array::from_fn(|i| rows[i / 4][i % 4])
     });
-    let rows = |row: usize| -> [f64; 4] { std::array::from_fn(|i| found.value[4 * row + i]) };
+    let rows = |row: usize| -> [f64; 4] { std::array::from_fn(|i| result.value[4 * row + i]) };
     let shares = rows(2).into_iter().zip(rows(0)).map(|(rounded, power)| rounded / power.abs());
     let rounding = shares.fold(0.0, f64::max);
-    Scattered { lookups: rows(1), off: found.error[4], rounding, panels: found.panels }
+    Scattered { lookups: rows(1), off: result.error[4], rounding, panels: result.panels }
 }
 
 /// The lookups of a shadow ray, if one is cast.
@@ -118,12 +118,12 @@ fn scattered_at_collisions(scene: &RayScene) -> Scattered {
 /// The powers 1 … most of `Σ wᵢ sᵢ` over the collisions of a walk, or of `Σ |wᵢ| sᵢ`; `scored` is `E[sᵢ^j]` given h.
 fn powers_of_sum(
     chain: &Chain,
-    most: usize,
+    maximum: usize,
     signed: bool,
     scored: &dyn Fn(&At, f64, usize) -> f64,
 ) -> Vec<SolvedChain> {
     let mut known: Vec<SolvedChain> = Vec::new();
-    for k in 1..=most {
+    for k in 1..=maximum {
         let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
         let solved = chain.solve(&loss, &|at, p, i| {
             let [sampling, h, weight] = gain(at);
@@ -153,7 +153,7 @@ pub fn at_collisions(scene: &RayScene) -> TechniqueMoments {
     let raw = both(scene, &panels, rounding, powers);
     let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
     let counted = SUMS + off / cumulants[0];
-    TechniqueMoments { truth, raw, lookups, least: 0.0, counted, shadow_lookups: None }
+    TechniqueMoments { truth, raw, lookups, minimum: 0.0, counted, shadow_lookups: None }
 }
 
 /// Moments of resampled draws: one of the collisions casts a shadow ray for all.
@@ -204,7 +204,7 @@ pub fn resampled(scene: &RayScene, shadow_is_free: bool) -> TechniqueMoments {
     // The collision that casts the ray depends on all of them; without lookups of the ray this does not matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
     let truth = scene.radiance();
-    TechniqueMoments { truth, raw, lookups, least: 0.0, counted: SUMS, shadow_lookups: None }
+    TechniqueMoments { truth, raw, lookups, minimum: 0.0, counted: SUMS, shadow_lookups: None }
 }
 
 /// Moments of draws at `count` points of a density, all with the transmittance of one walk over the whole ray.
@@ -217,7 +217,7 @@ pub fn at_points(
         let p = density(node);
         p * power(node.extinction * node.source / p, k) * node.shadow.powers[k - 1]
     };
-    let found = scattered(scene, |node: &RayNode| {
+    let result = scattered(scene, |node: &RayNode| {
         let shadow = of_shadow(node);
         let from_first = [1, 2, 3, 4];
         let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k - 1]);
@@ -255,12 +255,12 @@ pub fn at_points(
         // All terms are positive.
         [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
     };
-    let raw = both(scene, &found.panels, found.rounding, powers);
-    let [first, ..] = found.lookups;
-    let each = std::array::from_fn(|k| if k == 0 { 1.0 } else { found.lookups[k - 1] });
+    let raw = both(scene, &result.panels, result.rounding, powers);
+    let [first, ..] = result.lookups;
+    let each = std::array::from_fn(|k| if k == 0 { 1.0 } else { result.lookups[k - 1] });
     let walk = poisson(scene.camera.collisions());
     let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
-    let counted = SUMS + found.off / (1.0 + first);
-    let (truth, least) = (scene.radiance(), count as f64);
-    TechniqueMoments { truth, raw, lookups: Some(lookups), least, counted, shadow_lookups: None }
+    let counted = SUMS + result.off / (1.0 + first);
+    let (truth, minimum) = (scene.radiance(), count as f64);
+    TechniqueMoments { truth, raw, lookups: Some(lookups), minimum, counted, shadow_lookups: None }
 }

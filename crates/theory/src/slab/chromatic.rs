@@ -83,8 +83,8 @@ impl Slabs<'_> {
 /// seconds.
 fn coarse(incidence: &Incidence, depth: f64, albedo: f64) -> Option<[Known; 2]> {
     let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 0.0 };
-    let found = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
-    Some([found[0].reflected, found[0].transmitted])
+    let result = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
+    Some([result[0].reflected, result[0].transmitted])
 }
 
 fn is_isotropic(incidence: &Incidence) -> bool {
@@ -152,11 +152,11 @@ impl BodyEnergies for Slabs<'_> {
             return None;
         }
         let depth = self.depth();
-        let found = slab::orders::orders(self.incidence.light, depth.value)?;
+        let result = slab::orders::orders(self.incidence.light, depth.value)?;
         let steepest = self.incidence.light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
-        let all: f64 = found.iter().flatten().sum();
+        let all: f64 = result.iter().flatten().sum();
         let error = OF_ORDERS + (all - 1.0).abs();
-        Some(Orders { found, error, each: 0.0, blur: steepest * depth.error })
+        Some(Orders { result, error, each: 0.0, blur: steepest * depth.error })
     }
 
     fn lookups(&self, heroes: &[(f64, f64)]) -> Option<CountDistribution> {
@@ -189,9 +189,9 @@ impl<'a> SlabSpectrum<'a> {
 
     /// Energy that leaves a channel's slab at an end; NaN where it is unknown.
     fn truth(&self, end: End, channel: usize) -> Known {
-        let found = self.slabs[channel].leaving(self.problem.colours.albedos[channel]);
-        found.map_or(slab::EnergyBounds::UNKNOWN.reflected, |found| {
-            found[usize::from(end == End::Transmitted)]
+        let result = self.slabs[channel].leaving(self.problem.colours.albedos[channel]);
+        result.map_or(slab::EnergyBounds::UNKNOWN.reflected, |result| {
+            result[usize::from(end == End::Transmitted)]
         })
     }
 
@@ -278,18 +278,18 @@ impl<'a> SlabSpectrum<'a> {
             bound::square_within(&rates, walk, channel, &here, phi)
         };
         let nothing = bound::NOTHING * rates.majorants[0];
-        let share = |[least, _, scattered]: [f64; 3]| match least {
+        let share = |[minimum, _, scattered]: [f64; 3]| match minimum {
             // Every scattering of a hero's own channel has the same factor.
             _ if walk == Proposal::Hero(channel) => rates.albedos[channel] * phi,
             // Where there are no collisions nothing is lost or gained.
-            _ if scattered == 0.0 && least >= -nothing => 0.0,
-            _ if least > 0.0 => scattered / least,
+            _ if scattered == 0.0 && minimum >= -nothing => 0.0,
+            _ if minimum > 0.0 => scattered / minimum,
             _ => f64::INFINITY,
         };
         let of = |f: &dyn Fn([f64; 3]) -> f64| {
             mesh.supremum(|t| f(at(t)), |part| f(within(part))).max(0.0)
         };
-        [of(&|[_, most, _]| most), of(&share)]
+        [of(&|[_, maximum, _]| maximum), of(&share)]
     }
 
     /// All channels that are seen, each made from its expected value and its channel number.
@@ -371,10 +371,11 @@ mod tests {
                 for i in 1..=4000 {
                     let t = (f64::from(i) * 0.618_033_988_749_894_9).fract();
                     let here = media.each_ref().map(|medium| medium.extinction(t));
-                    let found = bound::square(&rates, walk, channel, &here, 1.0);
-                    largest[0] = largest[0].max(found.lost);
-                    let is_lost = found.lost > 0.0;
-                    let share = if is_lost { found.scattered / found.lost } else { f64::INFINITY };
+                    let result = bound::square(&rates, walk, channel, &here, 1.0);
+                    largest[0] = largest[0].max(result.lost);
+                    let is_lost = result.lost > 0.0;
+                    let share =
+                        if is_lost { result.scattered / result.lost } else { f64::INFINITY };
                     largest[1] = largest[1].max(share);
                 }
                 for (bound, largest) in bounds.into_iter().zip(largest) {

@@ -79,9 +79,9 @@ impl<S: Scalar> Layer<S> {
         });
         let scattered = Matrix::new(rows, columns, |i, j| {
             // The smaller exponent is factored out: nothing overflows.
-            let least = inverse[i].min(inverse[j]);
+            let minimum = inverse[i].min(inverse[j]);
             let path = lost * (inverse[i] - inverse[j]).abs();
-            let through = (-lost * least).exp() * path.mean_decay();
+            let through = (-lost * minimum).exp() * path.mean_decay();
             slice.scattered * directions.onward.at(i, j) * flown * inverse[i] * through
         });
         let score = inverse.iter().map(|&i| (lost * i).mean_decay() * (slice.score * flown * i));
@@ -124,15 +124,15 @@ impl<S: Scalar> Layer<S> {
     ) -> Option<Self> {
         let columns = there_and_back.columns();
         // One more column for the scores: M (N₂ + R₂N₁).
-        let met = |score: &[S]| -> Vec<S> {
+        let extinctions = |score: &[S]| -> Vec<S> {
             let back = below.reflected.applied(score);
             below.score.iter().zip(back).map(|(&own, back)| own + back).collect()
         };
-        let (through, scores) = (below.through(), met(&self.score));
-        let wanted = Matrix::new(columns, columns + 1, |i, j| {
+        let (through, scores) = (below.through(), extinctions(&self.score));
+        let expected = Matrix::new(columns, columns + 1, |i, j| {
             if j < columns { through.at(i, j) } else { scores[i] }
         });
-        let solved = there_and_back.series_times(&wanted)?;
+        let solved = there_and_back.series_times(&expected)?;
         let downward = Matrix::new(columns, columns, |i, j| solved.at(i, j));
         let inner: Vec<S> = (0..columns).map(|i| solved.at(i, columns)).collect();
         let turned = self.reflected.times(&downward);
@@ -141,7 +141,7 @@ impl<S: Scalar> Layer<S> {
         let past = below.scattered.clone().plus(&below.reflected.times(&turned));
         let again = self.reflected.applied(&inner);
         let seen: Vec<S> = self.score.iter().zip(again).map(|(&own, back)| own + back).collect();
-        let (all, passed) = (met(&seen), self.scattered.applied(&inner));
+        let (all, passed) = (extinctions(&seen), self.scattered.applied(&inner));
         let reflected = self.reflected.clone().plus(&self.scattered.times(&upward));
         let scattered = self.scattered.times(&downward);
         let score = (0..all.len()).map(|i| self.score[i] + passed[i] + self.direct[i] * all[i]);

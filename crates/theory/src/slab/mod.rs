@@ -271,9 +271,9 @@ fn resolved<S: Scalar>(
         [(6, SAFETY), (5, 1.0 / of_coarsest), (4, 1.0 / of_half)].map(|(eighths, factor)| {
             let other = resolution.coarser(eighths);
             match at(other) {
-                Some(found) => Some((found, factor)),
+                Some(result) => Some((result, factor)),
                 None => thicker(phase, lights, slices, [resolution, other], factor, &fine)
-                    .map(|found| (found, 1.0)),
+                    .map(|result| (result, 1.0)),
             }
         });
     let depth: f64 = slices.iter().map(|slice| slice.rate * slice.lost().leading()).sum();
@@ -283,7 +283,7 @@ fn resolved<S: Scalar>(
         // Known errors are added: of the first layer, of rounding, and of doubles that have fewer digits.
         let fine = of(&fine[i]);
         let difference = |other: &Option<(Vec<Shares<S>>, f64)>| match other {
-            Some((found, factor)) => factor * (fine - of(&found[i])).abs(),
+            Some((result, factor)) => factor * (fine - of(&result[i])).abs(),
             None => f64::INFINITY,
         };
         let differences = others.iter().map(difference).fold(0.0, f64::max);
@@ -316,9 +316,11 @@ fn thicker<S: Scalar>(
         energies_at(phase, lights, &slices, resolution)
     };
     let is_below = |depth: f64| {
-        let found = at(other, depth);
+        let result = at(other, depth);
         let reflected = |shares: &Shares<S>| shares.reflected.leading();
-        found.is_some_and(|found| found.iter().zip(fine).all(|(x, y)| reflected(x) <= reflected(y)))
+        result.is_some_and(|result| {
+            result.iter().zip(fine).all(|(x, y)| reflected(x) <= reflected(y))
+        })
     };
     let (mut low, mut high) = (0.5, 1.0);
     if !is_below(low) {
@@ -338,9 +340,9 @@ fn counts<S: Scalar>(
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<[Known; 4]>> {
-    let found = energies_at(phase, lights, slices, resolution.of(phase))?;
+    let result = energies_at(phase, lights, slices, resolution.of(phase))?;
     let of = |shares: &Shares<S>| factorial::<S>(|k| Known::exact(shares.score.term(k)));
-    Some(found.iter().map(of).collect())
+    Some(result.iter().map(of).collect())
 }
 
 /// Shares at one resolution, without error bounds.
@@ -360,8 +362,8 @@ fn energies_at<S: Scalar>(
     slices: &[Kernel<S>],
     resolution: Resolution,
 ) -> Option<Vec<Shares<S>>> {
-    let found = layers(phase, lights, slices, resolution)?;
-    Some(found.into_iter().map(|(energy, _)| energy).collect())
+    let result = layers(phase, lights, slices, resolution)?;
+    Some(result.into_iter().map(|(energy, _)| energy).collect())
 }
 
 /// Shares for each light, and the light that would collide in a thin layer below, per optical depth of that layer.
@@ -389,7 +391,7 @@ fn layers<S: Scalar>(
         scattered + layer.direct[i] / directions.cosines[i]
     };
     let mut row = count;
-    let mut found = Vec::with_capacity(lights.len());
+    let mut result = Vec::with_capacity(lights.len());
     for light in lights {
         let share = |f: &dyn Fn(usize) -> S| match light {
             IncidentLight::Collimated(_) => f(row),
@@ -405,7 +407,7 @@ fn layers<S: Scalar>(
         };
         let colliding = share(&leaving).leading();
         row += usize::from(light.cosine().is_some());
-        found.push((shares, colliding));
+        result.push((shares, colliding));
     }
     let is_finite = |(shares, _): &(Shares<S>, f64)| {
         let Shares { reflected, transmitted, score } = *shares;
@@ -413,7 +415,7 @@ fn layers<S: Scalar>(
             .iter()
             .all(|x| (0..S::TERMS).all(|index| x.term(index).is_finite()))
     };
-    found.iter().all(is_finite).then_some(found)
+    result.iter().all(is_finite).then_some(result)
 }
 
 /// The layers laid upon each other, the first on top.
@@ -459,7 +461,7 @@ pub fn answers(
         // light that collides in it.
         let steepest = light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
         // Below the slab that is the light that leaves there; half of the directions give it within a factor of 2.
-        let below = colliding.as_ref().map_or(steepest, |found| 2.0 * found[i].1);
+        let below = colliding.as_ref().map_or(steepest, |result| 2.0 * result[i].1);
         let with = |known: Known, slope| known.blurred(slope * depth.error);
         let shares = thin::by_orders(phase, *light, depth.value, albedo)
             .unwrap_or([answer.reflected, answer.transmitted]);

@@ -117,15 +117,15 @@ pub fn orders(light: IncidentLight, depth: f64) -> Option<Vec<[f64; 2]>> {
         }
     };
     let mut collisions: Vec<f64> = nodes.iter().map(|&(u, _)| first(u)).collect();
-    let mut found = vec![[0.0, unscattered]];
-    while found.len() < MAX_ORDERS {
+    let mut result = vec![[0.0, unscattered]];
+    while result.len() < MAX_ORDERS {
         let leaves = |end: usize| -> f64 {
             collisions.iter().zip(&escape).map(|(c, escape)| c * escape[end]).sum()
         };
         let order = [leaves(0), leaves(1)];
-        found.push(order);
+        result.push(order);
         if order[0] + order[1] < RARE {
-            return Some(found);
+            return Some(result);
         }
         let again = kernel.chunks(nodes.len());
         collisions =

@@ -134,12 +134,12 @@ fn graded(
     }
     let rule = GaussLegendre::new(NODES);
     let piece = |from: f64, to: f64| piece(cut, sampling, Span::new(from, to), &breaks, &rule);
-    let least = lights.iter().filter_map(|light| light.cosine()).fold(STEEP, f64::min);
+    let minimum = lights.iter().filter_map(|light| light.cosine()).fold(STEEP, f64::min);
     let flown = |ends: &[f64]| piece(ends[0], ends[1]).map_or(0.0, |piece| piece.flown);
     for _ in 0..HALVINGS {
         // Light passes layers without collisions.
         let Some(first) = ends.windows(2).position(|ends| flown(ends) > 0.0) else { break };
-        if flown(&ends[first..]) <= least {
+        if flown(&ends[first..]) <= minimum {
             break;
         }
         ends.insert(first + 1, 0.5 * (ends[first] + ends[first + 1]));

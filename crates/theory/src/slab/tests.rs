@@ -39,15 +39,15 @@ fn next_to_criticality_the_error_covers_what_directions_are_missing() {
         }
         for exponent in 1..=24 {
             let albedo = low * (1.0 - 0.5f64.powi(exponent));
-            let found = solve(&phase, &LIGHTS, &slab(depth, albedo), Resolution::COARSE);
+            let computed = solve(&phase, &LIGHTS, &slab(depth, albedo), Resolution::COARSE);
             // The albedo is below the critical one of all directions.
             let context = format!("{depth}, 1 - 2^-{exponent}");
-            let Some(found) = found else { panic!("{context}: not infinite") };
+            let Some(computed) = computed else { panic!("{context}: not infinite") };
             for (count, eighths) in without.iter_mut().zip([6, 5, 4]) {
                 *count += u32::from(at(albedo, Resolution::COARSE.coarser(eighths)).is_none());
             }
             let exact = at(albedo, precise);
-            for (i, answer) in found.iter().enumerate() {
+            for (i, answer) in computed.iter().enumerate() {
                 let exact = exact.as_ref().map_or(f64::INFINITY, |exact| exact[i].reflected);
                 let Known { value, error, .. } = answer.reflected;
                 let context = format!("{context}: {value} ± {error}, {exact}");
@@ -98,28 +98,31 @@ fn peaks_that_most_directions_do_not_resolve_have_answers() {
     assert!(resolves(&peaked(0.95)) && resolves(&peaked(0.99)) && !resolves(&peaked(-0.95)));
     let slices = slab(5.0, 0.9);
     let exact = energies_at(&peaked(0.95), &lights, &slices, many).expect("finite");
-    let found = answers(&peaked(0.95), &lights, Known::exact(5.0), 0.9).expect("finite");
-    for (found, exact) in found.iter().zip(&exact) {
+    let computed = answers(&peaked(0.95), &lights, Known::exact(5.0), 0.9).expect("finite");
+    for (computed, exact) in computed.iter().zip(&exact) {
         let pairs = [
-            (found.reflected, exact.reflected),
-            (found.transmitted, exact.transmitted),
-            (found.score, exact.score),
+            (computed.reflected, exact.reflected),
+            (computed.transmitted, exact.transmitted),
+            (computed.score, exact.score),
         ];
-        for (found, exact) in pairs {
-            assert!((found.value - exact).abs() <= found.error + 1e-8, "{found:?}, {exact}");
-            assert!(found.error < 1e-4 * found.value, "{found:?}");
+        for (computed, exact) in pairs {
+            assert!(
+                (computed.value - exact).abs() <= computed.error + 1e-8,
+                "{computed:?}, {exact}"
+            );
+            assert!(computed.error < 1e-4 * computed.value, "{computed:?}");
         }
     }
     let few = Resolution { peaked: 72, first_layer: 1e-9, ..Resolution::FINE };
     let exact = energies(&peaked(0.99), &lights, &slices, Resolution { peaked: 144, ..few });
-    let found = solve(&peaked(0.99), &lights, &slices, few).expect("finite");
-    for (found, exact) in found.iter().zip(exact.expect("finite")) {
-        for (found, exact) in
-            [(found.reflected, exact.reflected), (found.transmitted, exact.transmitted)]
+    let computed = solve(&peaked(0.99), &lights, &slices, few).expect("finite");
+    for (computed, exact) in computed.iter().zip(exact.expect("finite")) {
+        for (computed, exact) in
+            [(computed.reflected, exact.reflected), (computed.transmitted, exact.transmitted)]
         {
-            assert!((found.value - exact).abs() <= found.error, "{found:?}, {exact}");
+            assert!((computed.value - exact).abs() <= computed.error, "{computed:?}, {exact}");
         }
-        assert!(found.transmitted.error < 1e-2 * found.transmitted.value, "{found:?}");
+        assert!(computed.transmitted.error < 1e-2 * computed.transmitted.value, "{computed:?}");
     }
 }
 
@@ -137,17 +140,17 @@ fn thick_slabs_let_as_much_through_as_diffusion_says() {
     let through = |depth: f64| {
         // An optical depth is a product that is rounded.
         let depth = Known::new(depth, f64::EPSILON * depth);
-        let found = answers(&Phase::Isotropic(Isotropic), &LIGHTS, depth, 0.9);
-        let found = found.expect("finite");
-        found.iter().map(|answer| answer.transmitted).collect::<Vec<_>>()
+        let computed = answers(&Phase::Isotropic(Isotropic), &LIGHTS, depth, 0.9);
+        let computed = computed.expect("finite");
+        computed.iter().map(|answer| answer.transmitted).collect::<Vec<_>>()
     };
     let first = through(60.0);
     for depth in [80.0, 150.0, 290.0] {
-        for (first, found) in first.iter().zip(through(depth)) {
-            let ratio = (kappa * (depth - 60.0)).exp() * found.value / first.value;
-            let error = found.error / found.value + first.error / first.value;
+        for (first, computed) in first.iter().zip(through(depth)) {
+            let ratio = (kappa * (depth - 60.0)).exp() * computed.value / first.value;
+            let error = computed.error / computed.value + first.error / first.value;
             assert!((ratio - 1.0).abs() <= error, "{depth}: {ratio} ± {error}");
-            assert!(found.error < 1e-4 * found.value, "{depth}: {found:?}");
+            assert!(computed.error < 1e-4 * computed.value, "{depth}: {computed:?}");
         }
     }
 }
@@ -230,9 +233,9 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
             for (depth, ratio, pieces) in
                 [(20.0, 1.0 / 1.4, constant), (depth, 10.0 / 14.0, graded)]
             {
-                let (truth, found) = of(rule, light, 1.0, ratio, depth, pieces);
+                let (truth, computed) = of(rule, light, 1.0, ratio, depth, pieces);
                 for (truth, channel) in
-                    [truth.reflected, truth.transmitted].iter().zip(&found.channels)
+                    [truth.reflected, truth.transmitted].iter().zip(&computed.channels)
                 {
                     let moments = channel.resolved_moments().expect("known");
                     let coin = truth.value * (1.0 - truth.value);
@@ -246,8 +249,8 @@ fn draws_of_0_and_1_are_seen_by_their_weights() {
             }
             // With absorption the weights of three rules are below 1.
             let pieces = Pieces::Exact(vec![Piece::of(1.4, 1.0 / 1.4)]);
-            let (truth, found) = of(rule, light, 0.6, 1.0 / 1.4, 1.0, pieces);
-            let variance = found.channels[0].moments.expect("known").variance();
+            let (truth, computed) = of(rule, light, 0.6, 1.0 / 1.4, 1.0, pieces);
+            let variance = computed.channels[0].moments.expect("known").variance();
             let coin = truth.reflected.value * (1.0 - truth.reflected.value);
             let is_coin = matches!(rule, ParticleRule::Analog | ParticleRule::Terminating);
             assert_eq!((variance / coin - 1.0).abs() < 1e-7, is_coin, "{rule:?}, {light:?}");
@@ -285,7 +288,8 @@ fn lookups_are_known_where_the_ratio_varies() {
     let cosine = 0.5;
     let light = IncidentLight::Collimated(cosine);
     let pieces = exponential(&[light], sampling).1;
-    let found = walk(light, ParticleRule::Analog, 0.0, pieces).lookups(&[light]).expect("known")[0];
+    let computed =
+        walk(light, ParticleRule::Analog, 0.0, pieces).lookups(&[light]).expect("known")[0];
     let rule = GaussLegendre::new(96);
     let exact = [1, 2, 3, 4].map(|k| {
         rule.integrate(0.0, 1.0, |t| {
@@ -294,8 +298,8 @@ fn lookups_are_known_where_the_ratio_varies() {
             f64::from(k) * sampling / cosine * (-lost).exp() * survived.powi(k - 1)
         })
     });
-    for (found, exact) in found.iter().zip(exact) {
-        assert!((found.value - exact).abs() <= found.error, "{found:?}, {exact}");
-        assert!(found.error < 0.02 * found.value, "{found:?}, {exact}");
+    for (computed, exact) in computed.iter().zip(exact) {
+        assert!((computed.value - exact).abs() <= computed.error, "{computed:?}, {exact}");
+        assert!(computed.error < 0.02 * computed.value, "{computed:?}, {exact}");
     }
 }

@@ -101,8 +101,8 @@ pub fn by_orders(
     }
     let orders = orders::orders(light, depth)?;
     // Everything that collides leaves at last, if nothing is absorbed.
-    let (found, all) = (orders[1..].iter().flatten().sum::<f64>(), collided(light, depth));
-    let error = OF_ORDERS + (found / all - 1.0).abs();
+    let (result, all) = (orders[1..].iter().flatten().sum::<f64>(), collided(light, depth));
+    let error = OF_ORDERS + (result / all - 1.0).abs();
     let scattered =
         |end: usize| orders[1..].iter().rev().fold(0.0, |sum, order| albedo * (sum + order[end]));
     Some([0, 1].map(|end| {
@@ -155,14 +155,14 @@ mod tests {
         for phase in [Phase::Isotropic(Isotropic), peaked(0.9), peaked(-0.6)] {
             for albedo in [0.9, 1.0] {
                 for depth in [1e-12, 1e-20, 1e-60] {
-                    let found = answers(&phase, &LIGHTS, Known::exact(depth), albedo);
-                    for (light, found) in LIGHTS.iter().zip(found.expect("finite")) {
-                        let back = found.reflected.value / (albedo * collided(*light, depth));
+                    let result = answers(&phase, &LIGHTS, Known::exact(depth), albedo);
+                    for (light, result) in LIGHTS.iter().zip(result.expect("finite")) {
+                        let back = result.reflected.value / (albedo * collided(*light, depth));
                         let context = format!("{phase:?}, {albedo}, {depth:e}, {light:?}");
                         let is_even = phase == Phase::Isotropic(Isotropic);
                         assert!(!is_even || (back - 0.5).abs() < 1e-9, "{context}: {back}");
                         assert!(back > 0.0 && back < 1.0, "{context}: {back}");
-                        for known in [found.reflected, found.transmitted] {
+                        for known in [result.reflected, result.transmitted] {
                             assert!(known.error < 1e-4 * known.value, "{context}: {known:?}");
                         }
                     }
@@ -179,16 +179,16 @@ mod tests {
             for albedo in [0.3, 0.9, 1.0] {
                 let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 1.0 };
                 let doubled = solve(&phase, &LIGHTS, &[slice], Resolution::FINE).expect("finite");
-                let found = answers(&phase, &LIGHTS, Known::exact(depth), albedo).expect("finite");
-                for (found, doubled) in found.iter().zip(doubled) {
-                    for (found, doubled) in [
-                        (found.reflected, doubled.reflected),
-                        (found.transmitted, doubled.transmitted),
+                let result = answers(&phase, &LIGHTS, Known::exact(depth), albedo).expect("finite");
+                for (result, doubled) in result.iter().zip(doubled) {
+                    for (result, doubled) in [
+                        (result.reflected, doubled.reflected),
+                        (result.transmitted, doubled.transmitted),
                     ] {
-                        let off = (found.value - doubled.value).abs();
-                        let context = format!("{depth:e}, {albedo}: {found:?}, {doubled:?}");
-                        assert!(off <= found.error + doubled.error, "{context}");
-                        assert!(found.error < 1e-6 * found.value, "{context}");
+                        let off = (result.value - doubled.value).abs();
+                        let context = format!("{depth:e}, {albedo}: {result:?}, {doubled:?}");
+                        assert!(off <= result.error + doubled.error, "{context}");
+                        assert!(result.error < 1e-6 * result.value, "{context}");
                     }
                 }
             }
@@ -204,15 +204,16 @@ mod tests {
                 let albedo = 4.621_230_384_040_332e-10;
                 let slice = Kernel { rate: depth, straight: 0.0, scattered: albedo, score: 1.0 };
                 let light = IncidentLight::Diffuse;
-                let found = solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];
+                let result =
+                    solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];
                 let exact = black(light, Known::exact(depth));
                 let slack = 2.0 * albedo * exact.score.value;
-                for (found, exact) in
-                    [(found.transmitted, exact.transmitted), (found.score, exact.score)]
+                for (result, exact) in
+                    [(result.transmitted, exact.transmitted), (result.score, exact.score)]
                 {
-                    let off = (found.value - exact.value).abs();
-                    let context = format!("{phase:?}, {depth:e}: {off:e}, {found:?}");
-                    assert!(off <= found.error + exact.error + slack, "{context}");
+                    let off = (result.value - exact.value).abs();
+                    let context = format!("{phase:?}, {depth:e}: {off:e}, {result:?}");
+                    assert!(off <= result.error + exact.error + slack, "{context}");
                 }
                 // As many collisions as by twice the directions.
                 let directions = 72;
@@ -223,9 +224,9 @@ mod tests {
                     ..Resolution::FINE
                 };
                 let fine = energies(&phase, &[light], &[slice], fine).expect("finite")[0];
-                let off = (fine.score - found.score.value).abs();
-                assert!(off <= found.score.error, "{phase:?}, {depth:e}: {off:e}, {found:?}");
-                let back = found.reflected;
+                let off = (fine.score - result.score.value).abs();
+                assert!(off <= result.score.error, "{phase:?}, {depth:e}: {off:e}, {result:?}");
+                let back = result.reflected;
                 assert!(back.error < 1e-2 * back.value, "{phase:?}, {depth:e}: {back:?}");
             }
         }
@@ -235,8 +236,9 @@ mod tests {
     #[test]
     fn a_black_slab_is_known_in_closed_form() {
         for depth in [0.0, 1e-9, 0.3, 20.0, 100.0] {
-            let found = answers(&peaked(-0.99), &LIGHTS, Known::exact(depth), 0.0).expect("finite");
-            for (light, found) in LIGHTS.iter().zip(found) {
+            let result =
+                answers(&peaked(-0.99), &LIGHTS, Known::exact(depth), 0.0).expect("finite");
+            for (light, result) in LIGHTS.iter().zip(result) {
                 let exact = match light {
                     IncidentLight::Collimated(cosine) => (-depth / cosine).exp(),
                     IncidentLight::Diffuse => GaussLegendre::new(64)
@@ -244,14 +246,14 @@ mod tests {
                         .map(|(x, weight)| 4.0 * weight * x.powi(3) * (-depth / (x * x)).exp())
                         .sum(),
                 };
-                let Known { value, error, .. } = found.transmitted;
-                assert_eq!(found.reflected, Known::new(0.0, 0.0));
+                let Known { value, error, .. } = result.transmitted;
+                assert_eq!(result.reflected, Known::new(0.0, 0.0));
                 assert!(
                     (value / exact - 1.0).abs() < 1e-9,
                     "{light:?}, {depth}: {value:e} {exact:e}"
                 );
                 assert!(error < 1e-10 * value, "{light:?}, {depth}: {error:e}");
-                assert!((found.score.value + value - 1.0).abs() < 1e-15);
+                assert!((result.score.value + value - 1.0).abs() < 1e-15);
             }
         }
     }

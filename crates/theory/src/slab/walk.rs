@@ -108,9 +108,10 @@ impl SlabWalk {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
         let lookups = self.lookups(lights);
         let of = |(i, truth): (usize, &EnergyBounds)| {
-            let law = lookups.as_ref().map(|lookups| CountDistribution::of_factorial(lookups[i]));
+            let distribution =
+                lookups.as_ref().map(|lookups| CountDistribution::of_factorial(lookups[i]));
             let of_side = |side: usize| RawMoments(raw.each_ref().map(|all| all[i][side]));
-            self.predicted(truth, [0, 1].map(of_side), law)
+            self.predicted(truth, [0, 1].map(of_side), distribution)
         };
         truths.iter().enumerate().map(of).collect()
     }
@@ -256,15 +257,15 @@ impl SlabWalk {
         if k == 1 || self.is_bernoulli() {
             return truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect();
         }
-        let found = self.powers(k, lights).unwrap_or_else(infinite);
+        let result = self.powers(k, lights).unwrap_or_else(infinite);
         if !self.is_share() {
-            return found;
+            return result;
         }
-        let both = |(found, truth): ([Known; 2], &EnergyBounds)| {
-            let [reflected, transmitted] = found;
+        let both = |(result, truth): ([Known; 2], &EnergyBounds)| {
+            let [reflected, transmitted] = result;
             [of_share(reflected, truth.reflected, k), of_share(transmitted, truth.transmitted, k)]
         };
-        found.into_iter().zip(truths).map(both).collect()
+        result.into_iter().zip(truths).map(both).collect()
     }
 
     /// Returns whether draws lie in [0, 1], as all weights do.
@@ -359,13 +360,14 @@ impl SlabWalk {
 
 /// `E[X^k]` of a draw in [0, 1] with mean T, clamped to its bounds: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's inequality and
 /// by `x^k ≤ x`. A value beyond them is an error of theory.
-fn of_share(found: Known, truth: Known, k: i32) -> Known {
-    let (least, most) = ((truth.value - truth.error).max(0.0).powi(k), truth.value + truth.error);
-    if (least..=most).contains(&found.value) && found.error <= most {
-        return found;
+fn of_share(result: Known, truth: Known, k: i32) -> Known {
+    let (minimum, maximum) =
+        ((truth.value - truth.error).max(0.0).powi(k), truth.value + truth.error);
+    if (minimum..=maximum).contains(&result.value) && result.error <= maximum {
+        return result;
     }
-    let value = found.value.max(least).min(most);
-    Known { value, error: found.error.min((value - least).max(most - value)), ..found }
+    let value = result.value.max(minimum).min(maximum);
+    Known { value, error: result.error.min((value - minimum).max(maximum - value)), ..result }
 }
 
 /// Extrapolation from two cuts: the error of the finer one is a quarter of the other's, and the error of the

@@ -38,12 +38,12 @@ pub fn content(volume: &Volume) -> Option<Known> {
 }
 
 /// `∫σ_t dV` with a maximum number of chords in a resolution; `None` for a volume without bounds.
-pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
+pub fn by_chords(volume: &Volume, maximum: f64) -> Option<Known> {
     let within = volume.bounds().enclosing_box()?;
     let height = within.high.0[2] - within.low.0[2];
-    let most = most.min(MAX_PIECES / (1.0 + volume.facts().pieces_per_length * height));
+    let maximum = maximum.min(MAX_PIECES / (1.0 + volume.facts().pieces_per_length * height));
     let mut chords = Chords::new(volume, &within);
-    if matches!(chords, Chords::Box(_, true)) && chords.count(2) > most {
+    if matches!(chords, Chords::Box(_, true)) && chords.count(2) > maximum {
         // Cells that are finer than chords need no cuts.
         chords = Chords::whole(&within);
     }
@@ -62,14 +62,14 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
         let agree = |step: &f64| here.value > 0.0 && *step <= AGREED * here.value;
         let is_there =
             is_smooth && steps.len() >= needed && steps.iter().rev().take(needed).all(agree);
-        if is_there || (steps.len() >= LEAST_STEPS && chords.count(2 * n) > most) {
+        if is_there || (steps.len() >= LEAST_STEPS && chords.count(2 * n) > maximum) {
             let error = if is_there {
                 steps[steps.len() - 1]
             } else {
                 // Noise bends so little that caps of it are negligible.
                 let is_even = is_smooth || volume.facts().smoothness == Smoothness::SmoothCells;
-                let most = if is_even { 0.0 } else { volume.majorant(&within) };
-                settled(&steps, is_smooth) + most * chords.unseen(n)
+                let maximum = if is_even { 0.0 } else { volume.majorant(&within) };
+                settled(&steps, is_smooth) + maximum * chords.unseen(n)
             };
             let rounding = here.error + 8.0 * f64::EPSILON * here.value;
             return Some(Known::estimated(here.value, error + rounding));
@@ -264,16 +264,16 @@ mod tests {
             let factor = safety_factor(m);
             assert!((factor / about - 1.0).abs() < 0.01, "{factor}");
             let density = |x: f64| (-0.5 * x * x).exp() / TAU.sqrt();
-            let mut chance = 0.0;
+            let mut probability = 0.0;
             for i in 0..4000 {
                 let x = 4e-3 * (f64::from(i) + 0.5);
                 let near = |j: usize| {
                     let size = 2f64.powf(j as f64);
                     2.0 * x / factor * density(x / size) / size
                 };
-                chance += 2.0 * 4e-3 * density(x) * (1..=m).map(near).product::<f64>();
+                probability += 2.0 * 4e-3 * density(x) * (1..=m).map(near).product::<f64>();
             }
-            assert!((chance / MISS_PROBABILITY - 1.0).abs() < 1e-6, "{chance:e}");
+            assert!((probability / MISS_PROBABILITY - 1.0).abs() < 1e-6, "{probability:e}");
         }
     }
 }

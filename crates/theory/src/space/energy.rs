@@ -110,9 +110,9 @@ impl WalkBound {
             // Weights that grow lose the digits of a sum that is 1.
             return (extremes.kept <= 1.0 + SLACK).then_some(0.0);
         }
-        let chance = -(-self.depth).exp_m1();
-        let thin = if chance * extremes.kept < 1.0 {
-            chance * extremes.spread / (1.0 - chance * extremes.kept)
+        let probability = -(-self.depth).exp_m1();
+        let thin = if probability * extremes.kept < 1.0 {
+            probability * extremes.spread / (1.0 - probability * extremes.kept)
         } else {
             f64::INFINITY
         };
@@ -121,33 +121,33 @@ impl WalkBound {
     }
 
     fn extremes(&self) -> Extremes {
-        let (most, high) = (self.ratio(), self.albedo[1]);
-        let [mut found, beyond] = [self.within(most.min(1.0)), self.beyond(most)];
-        if most >= 1.0 {
-            found.spread = found.spread.max(beyond.spread);
-            found.kept = found.kept.max(beyond.kept);
-            found.relative = found.relative.max(beyond.relative);
+        let (maximum, high) = (self.ratio(), self.albedo[1]);
+        let [mut result, beyond] = [self.within(maximum.min(1.0)), self.beyond(maximum)];
+        if maximum >= 1.0 {
+            result.spread = result.spread.max(beyond.spread);
+            result.kept = result.kept.max(beyond.kept);
+            result.relative = result.relative.max(beyond.relative);
         }
-        let split = (1.0 - most).powi(2) + (high * most).powi(2);
+        let split = (1.0 - maximum).powi(2) + (high * maximum).powi(2);
         if self.splits && split > 1.0 {
-            found.kept = found.kept.max(split);
-            found.relative = f64::INFINITY;
+            result.kept = result.kept.max(split);
+            result.relative = f64::INFINITY;
         }
-        found
+        result
     }
 
-    /// Suprema over `0 < r ≤ most ≤ 1`.
-    fn within(&self, most: f64) -> Extremes {
+    /// Suprema over `0 < r ≤ maximum ≤ 1`.
+    fn within(&self, maximum: f64) -> Extremes {
         let low = self.albedo[0];
         let lost = 1.0 - low;
         let [spread, relative] = match self.rule {
             ParticleRule::Terminating | ParticleRule::Analog => {
-                let least = (1.0 - lost * most).max(0.5);
-                [least * (1.0 - least), 1.0]
+                let minimum = (1.0 - lost * maximum).max(0.5);
+                [minimum * (1.0 - minimum), 1.0]
             }
             ParticleRule::NonTerminating | ParticleRule::Adaptive => [0.0; 2],
             ParticleRule::Weighted => {
-                let half = most.min(0.5);
+                let half = maximum.min(0.5);
                 [lost * lost * half * (1.0 - half), lost / (1.0 + low)]
             }
         };
@@ -155,24 +155,26 @@ impl WalkBound {
         Extremes { spread, kept: 1.0, relative }
     }
 
-    /// Suprema over `1 ≤ r ≤ most`.
-    fn beyond(&self, most: f64) -> Extremes {
+    /// Suprema over `1 ≤ r ≤ maximum`.
+    fn beyond(&self, maximum: f64) -> Extremes {
         let high = self.albedo[1];
-        let both = (1.0 + high) * most - 1.0;
+        let both = (1.0 + high) * maximum - 1.0;
         let [spread, kept] = match self.rule {
             ParticleRule::Terminating | ParticleRule::Analog => {
-                [self.terminating(most, f64::INFINITY), both]
+                [self.terminating(maximum, f64::INFINITY), both]
             }
-            ParticleRule::NonTerminating => [4.0 * high * most * (most - 1.0), both * both],
-            ParticleRule::Adaptive if both <= 1.0 => [self.terminating(most, f64::INFINITY), both],
+            ParticleRule::NonTerminating => [4.0 * high * maximum * (maximum - 1.0), both * both],
+            ParticleRule::Adaptive if both <= 1.0 => {
+                [self.terminating(maximum, f64::INFINITY), both]
+            }
             ParticleRule::Adaptive => {
-                let lasting = 4.0 * high * most * (most - 1.0);
-                [lasting.max(self.terminating(most, 2.0)), both * both]
+                let lasting = 4.0 * high * maximum * (maximum - 1.0);
+                [lasting.max(self.terminating(maximum, 2.0)), both * both]
             }
             ParticleRule::Weighted => {
                 let square = high * high;
-                let kept = (2.0 * most - 1.0) * ((1.0 + square) * most - 1.0);
-                [(1.0 + high).powi(2) * most * (most - 1.0), kept]
+                let kept = (2.0 * maximum - 1.0) * ((1.0 + square) * maximum - 1.0);
+                [(1.0 + high).powi(2) * maximum * (maximum - 1.0), kept]
             }
         };
         // v/ℓ is largest in the corner.
@@ -180,26 +182,26 @@ impl WalkBound {
             ParticleRule::Terminating | ParticleRule::Analog | ParticleRule::Adaptive
                 if kept <= 1.0 =>
             {
-                spread_of_terminating(most, high)
+                spread_of_terminating(maximum, high)
             }
             _ => spread,
         };
         let relative = match 1.0 - kept {
             _ if spread <= NOTHING => 0.0,
             // At r = 1 it is a, also where both vanish.
-            _ if most == 1.0 => high,
+            _ if maximum == 1.0 => high,
             lost if lost > 0.0 => corner.max(0.0) / lost,
             _ => f64::INFINITY,
         };
         Extremes { spread, kept, relative }
     }
 
-    /// Supremum of v of the terminating rule over `1 ≤ r ≤ most`, `(1 + a) r ≤ sum`.
-    fn terminating(&self, most: f64, sum: f64) -> f64 {
+    /// Supremum of v of the terminating rule over `1 ≤ r ≤ maximum`, `(1 + a) r ≤ sum`.
+    fn terminating(&self, maximum: f64, sum: f64) -> f64 {
         let [low, high] = self.albedo;
         let mut largest = 0.0f64;
         let mut look = |ratio: f64, albedo: f64| {
-            if (1.0..=most).contains(&ratio)
+            if (1.0..=maximum).contains(&ratio)
                 && (low..=high).contains(&albedo)
                 && (1.0 + albedo) * ratio <= sum * (1.0 + SLACK)
             {
@@ -210,11 +212,11 @@ impl WalkBound {
             // ∂v/∂r = 0: 1 + a + 2(1 − a)m = 0.
             let lost = 1.0 - albedo;
             let vertex = (1.0 + (1.0 + albedo) / (2.0 * lost)) / lost;
-            for ratio in [1.0, most, vertex, sum / (1.0 + albedo)] {
+            for ratio in [1.0, maximum, vertex, sum / (1.0 + albedo)] {
                 look(ratio, albedo);
             }
         }
-        for ratio in [1.0, most] {
+        for ratio in [1.0, maximum] {
             // ∂v/∂a = 0: m = 1/2.
             for albedo in [1.0 - 0.5 / ratio, sum / ratio - 1.0] {
                 look(ratio, albedo);
@@ -284,15 +286,15 @@ mod tests {
         let squared = |i: u32| 1.0 - (1.0 - share(i)).powi(4);
         for rule in ParticleRule::ALL {
             for albedo in [[0.0, 1.0], [0.1, 0.4], [0.3, 0.3], [0.9, 0.95], [0.0, 0.0]] {
-                for most in [0.3, 0.8, 1.0, 1.01, 1.2, 1.5, 1.9] {
-                    if most > rule.limits(albedo[1])[1] {
+                for maximum in [0.3, 0.8, 1.0, 1.01, 1.2, 1.5, 1.9] {
+                    if maximum > rule.limits(albedo[1])[1] {
                         continue;
                     }
-                    let walks = WalkBound { albedo, ..walks(rule, most, 0.0) };
-                    let found = walks.extremes();
+                    let walks = WalkBound { albedo, ..walks(rule, maximum, 0.0) };
+                    let result = walks.extremes();
                     let mut seen = [0.0f64; 3];
                     for (i, j) in (1..=400).flat_map(|i| (0..=40).map(move |j| (i, 10 * j))) {
-                        let ratio = most * if i % 2 == 0 { share(i) } else { squared(i) };
+                        let ratio = maximum * if i % 2 == 0 { share(i) } else { squared(i) };
                         let a = albedo[0] + (albedo[1] - albedo[0]) * share(j);
                         let probabilities = rule.probabilities(ratio, a);
                         let kept =
@@ -307,7 +309,7 @@ mod tests {
                             *seen = seen.max(value);
                         }
                     }
-                    let bounds = [found.spread, found.kept, found.relative];
+                    let bounds = [result.spread, result.kept, result.relative];
                     let context = format!("{walks:?}: {seen:?} for {bounds:?}");
                     for (seen, bound) in seen.into_iter().zip(bounds) {
                         assert!(seen <= bound * (1.0 + 1e-9) + 1e-12, "{context}");

@@ -46,14 +46,14 @@ pub fn independent(heroes: &[f64]) -> Prediction {
     let squares: Vec<[f64; 2]> = heroes.iter().map(|weight| [1.0, 1.0 / weight]).collect();
     let mut covariances = colours::exclusive(&squares);
     // The product of two channels that are drawn equally often is equal in every draw: there is nothing to test.
-    covariances.retain(|found| found.variance > ROUNDING);
+    covariances.retain(|result| result.variance > ROUNDING);
     Prediction { channels, covariances, ..Prediction::default() }
 }
 
 /// Prediction for all channels by the balance heuristic, given the probability of each hero.
 pub fn balanced(heroes: &[f64]) -> Prediction {
     let channels = heroes.iter().map(|weight| match 1.0 / weight - 1.0 {
-        most if most > 0.0 => Channel { variance_bound: Some(most), ..channel(None) },
+        maximum if maximum > 0.0 => Channel { variance_bound: Some(maximum), ..channel(None) },
         _ => channel(Moments::certain(1.0)),
     });
     Prediction { channels: colours::named(channels.collect()), ..Prediction::default() }
@@ -90,8 +90,8 @@ pub fn second_moment_bound(
         _ => diameter,
     };
     let [first, then] = [diameter, then].map(|length| FlightMoments::of(square.lost, length));
-    let found = bound::largest(first, then, [square.scattered, square.absorbed]);
+    let result = bound::largest(first, then, [square.scattered, square.absorbed]);
     // A hero may never be absorbed where another channel is.
     let is_finite = square.absorbed.is_finite();
-    found.ok_or(if is_finite { square.scattered * then.collides } else { f64::INFINITY })
+    result.ok_or(if is_finite { square.scattered * then.collides } else { f64::INFINITY })
 }

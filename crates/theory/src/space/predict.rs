@@ -137,7 +137,7 @@ pub fn infinite(problem: &InfiniteMedium, end: Option<f64>, ratio: Option<f64>) 
         }
         None => collisions,
     });
-    let law = |end: f64| {
+    let distribution = |end: f64| {
         let moments = geometric(1.0 / end, end);
         let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
         if variance <= 0.0 {
@@ -147,5 +147,5 @@ pub fn infinite(problem: &InfiniteMedium, end: Option<f64>, ratio: Option<f64>) 
         let (moments_error, grade) = (error, Grade::Proven);
         CountDistribution { mean, variance, error, grade, moments_error, kurtosis, pmf }
     };
-    Prediction { channels, lookups: end.map(law), ..Prediction::default() }
+    Prediction { channels, lookups: end.map(distribution), ..Prediction::default() }
 }

@@ -12,15 +12,15 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     let passes = format!("{} passes of {} in {name}", judgement.passes, judgement.size);
     let mut lines = vec![("images", passes)];
     lines.extend(judgement.whole.iter().map(|whole| ("whole", whole_line(judgement, whole))));
-    lines.extend(judgement.comparison.iter().map(|found| ("against", against_line(found))));
-    lines.extend(judgement.estimate.map(|found| {
-        let source = if found.is_given { "as given" } else { "measured" };
+    lines.extend(judgement.comparison.iter().map(|finding| ("against", against_line(finding))));
+    lines.extend(judgement.estimate.map(|finding| {
+        let source = if finding.is_given { "as given" } else { "measured" };
         let what = format!(
             "the variance is that of {} passes; kurtosis {} at most ({source}); {} negative, {} no numbers",
-            found.passes,
-            short(found.kurtosis, 3),
-            found.negative,
-            found.unknown
+            finding.passes,
+            short(finding.kurtosis, 3),
+            finding.negative,
+            finding.unknown
         );
         ("estimate", what)
     }));
@@ -47,27 +47,27 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
 }
 
 /// Returns the comparison of two stacks and its method.
-fn against_line(found: &StackComparison) -> String {
-    let method = match found.method {
-        ComparisonMethod::Permutation => format!("{} permutations of passes", found.permutations),
+fn against_line(finding: &StackComparison) -> String {
+    let method = match finding.method {
+        ComparisonMethod::Permutation => format!("{} permutations of passes", finding.permutations),
         ComparisonMethod::Signs => "signs of differences".to_owned(),
         ComparisonMethod::None => {
             "no test: too few passes of pixels that depend on each other".to_owned()
         }
     };
-    let spread = found.spread.map_or(String::new(), |ratio| {
-        let p = if found.permutations > 0 {
-            format!(" (p = {})", short(found.spread_p, 2))
+    let spread = finding.spread.map_or(String::new(), |ratio| {
+        let p = if finding.permutations > 0 {
+            format!(" (p = {})", short(finding.spread_p, 2))
         } else {
             String::new()
         };
-        let word = if found.is_same_distribution { "" } else { "; reported only" };
+        let word = if finding.is_same_distribution { "" } else { "; reported only" };
         format!("; variance {} times that of the reference{p}{word}", fixed(ratio, 4))
     });
     format!(
         "{} passes of the reference; equal distributions: p = {} ({method}){spread}",
-        found.passes,
-        short(found.p, 3)
+        finding.passes,
+        short(finding.p, 3)
     )
 }
 
@@ -83,7 +83,7 @@ fn numbers(judgement: &Judgement, tile: &Tile) -> String {
 /// Returns s²/V, and what the evidence is about.
 fn variance_line(variance: &Variance) -> String {
     let &Variance { about_truth, about_mean, ln_e, limit, is_refuted, .. } = variance;
-    let (ratio, found) = (fixed(about_mean, 5), format!("ln E = {ln_e:.1} of {limit:.1}"));
+    let (ratio, finding) = (fixed(about_mean, 5), format!("ln E = {ln_e:.1} of {limit:.1}"));
     let biased =
         if ln_e >= limit && !is_refuted { ": mostly because the means are off" } else { "" };
     // An estimate is compared with pairs of passes, without the truth.
@@ -92,7 +92,7 @@ fn variance_line(variance: &Variance) -> String {
     } else {
         format!("; (x − truth)²/V = {}", fixed(about_truth, 5))
     };
-    format!("s²/V = {ratio}{squares}, {found} against V as the largest{biased}")
+    format!("s²/V = {ratio}{squares}, {finding} against V as the largest{biased}")
 }
 
 fn whole_line(judgement: &Judgement, whole: &Tile) -> String {
@@ -136,15 +136,15 @@ fn worst_line(judgement: &Judgement, tile: &Tile) -> String {
     )
 }
 
-fn dependence(found: &Dependence, evidence: &str, untested: &str) -> String {
-    if found.is_refuted() {
-        return found.reason.clone();
+fn dependence(finding: &Dependence, evidence: &str, untested: &str) -> String {
+    if finding.is_refuted() {
+        return finding.reason.clone();
     }
-    if !found.is_tested {
+    if !finding.is_tested {
         return format!("not tested for dependence: {untested}");
     }
     format!(
         "{evidence} = {:.1} of {:.1} against independence: nothing found",
-        found.evidence, found.limit
+        finding.evidence, finding.limit
     )
 }

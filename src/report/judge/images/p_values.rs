@@ -30,7 +30,7 @@ pub fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     let maps = Maps::new(judgement);
     let all = maps.end() + WIDTH + GAP;
     let mut sheet = Sheet::new(all, HEAD + maps.size[1].max(HEIGHT + 84.0) + 24.0);
-    let source = match judgement.comparison.as_ref().map(|found| found.method) {
+    let source = match judgement.comparison.as_ref().map(|finding| finding.method) {
         Some(ComparisonMethod::Permutation) => {
             "by permutations of the passes: uniform if both stacks have one distribution"
         }
@@ -78,10 +78,11 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
     let expected = all as f64 / bins;
     // Three standard deviations of a binomial count.
     let band = 3.0 * (expected * (1.0 - 1.0 / bins)).sqrt();
-    let most = counts.iter().map(|&n| n as f64).fold(expected + band, f64::max).max(1.0);
+    let maximum = counts.iter().map(|&n| n as f64).fold(expected + band, f64::max).max(1.0);
     let axis = |title: &str, high| Axis { title: title.to_owned(), log: false, low: 0.0, high };
     let size = [WIDTH - 56.0, HEIGHT];
-    let panel = Panel::at([left + 44.0, HEAD], size, axis("p-value", 1.0), axis("", 1.04 * most));
+    let panel =
+        Panel::at([left + 44.0, HEAD], size, axis("p-value", 1.0), axis("", 1.04 * maximum));
     let area = |ends: [f64; 2], [bottom, top]: [f64; 2]| ends.map(|p| (p, bottom, top));
     let usual = [(expected - band).max(0.0), expected + band];
     panel.band(sheet, area([0.0, 1.0], usual), ink(0xE0, 0xE0, 0xE0));

@@ -173,8 +173,8 @@ pub fn costs(text: &mut String, pen: Pen, rows: &[Row], is_shown: &dyn Fn(&str) 
 
 /// Returns words for the best σ̂ of a row; `None` if it was not searched.
 fn best(row: &Row) -> Option<String> {
-    let found = row.best.as_ref()?;
-    let (Best { sampling, fom, limit, .. }, kind) = (found, fields::kind(found));
+    let finding = row.best.as_ref()?;
+    let (Best { sampling, fom, limit, .. }, kind) = (finding, fields::kind(finding));
     let fom = fom.map_or("∞".to_owned(), |fom| short(fom, 4));
     let best = format!("best σ\u{302} {}, best FoM {fom}", short(*sampling, 4));
     Some(match *limit {

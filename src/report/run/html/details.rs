@@ -137,7 +137,7 @@ fn numbers(row: &Row) -> Markup {
 
 /// Returns mean, variance and lookups, which every experiment has, and the figure of merit, as far as they are known.
 fn lines<'a>(row: &Row<'a>) -> Vec<NumberLine<'a>> {
-    let found =
+    let result =
         |score: Score| row.findings().find(|one| one.check == score.check() && !one.expects_bias);
     let of_score = |score| {
         let values = row.compared(score);
@@ -147,7 +147,7 @@ fn lines<'a>(row: &Row<'a>) -> Vec<NumberLine<'a>> {
             Score::Lookups => "lookups per draw",
         };
         let z = Print::Signed.text(&Cell::Score(values.z, row.is_normal(score)));
-        NumberLine { name, values, z, finding: found(score) }
+        NumberLine { name, values, z, finding: result(score) }
     };
     let has_setup = row.experiment.setup_lookups.is_some_and(|lookups| lookups > 0);
     let (measured, theory) = (row.fom, row.predicted_fom);
@@ -179,7 +179,7 @@ fn numbers_of(line: &NumberLine) -> Markup {
 
 /// Returns the verdict of a check and its grounds.
 fn says(finding: &Finding) -> Markup {
-    let CheckResult { verdict, gate, .. } = &finding.found;
+    let CheckResult { verdict, gate, .. } = &finding.result;
     let number = |value| words::number(Some(value), 4);
     html! {
         td class={ "verdict " (verdict.word()) } { (words::verdict(Some(*verdict))) }

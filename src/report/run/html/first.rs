@@ -131,8 +131,8 @@ pub fn facts(record: &Record) -> Markup {
 /// Returns the largest ln E of all checks without a declared bias, its limit, and its experiment.
 fn strongest(record: &Record) -> Option<String> {
     let gated = record.results.rows().flat_map(|row| {
-        let asked = row.findings().filter(|finding| !finding.expects_bias);
-        asked.filter_map(move |finding| Some((finding.evidence()?, row, finding)))
+        let requested = row.findings().filter(|finding| !finding.expects_bias);
+        requested.filter_map(move |finding| Some((finding.evidence()?, row, finding)))
     });
     // The first of equal ones.
     let (ln_e, row, finding) = gated.reduce(|a, b| if b.0 > a.0 { b } else { a })?;

@@ -73,9 +73,9 @@ fn tip(scores: &Scores, bin: &crate::record::scores::Bin) -> String {
         (_, false) => format!("above {}", short(low, 3)),
         _ => format!("from {} to {}", short(low, 3), short(high, 3)),
     };
-    let (what, [least, most]) = (name(scores.score), bin.band);
+    let (what, [minimum, maximum]) = (name(scores.score), bin.band);
     format!(
-        "z {place}: {} of {} {what}; {} expected, usually {least} to {most}",
+        "z {place}: {} of {} {what}; {} expected, usually {minimum} to {maximum}",
         bin.count,
         scores.all,
         short(bin.expected, 3)

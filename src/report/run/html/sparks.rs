@@ -65,8 +65,8 @@ pub fn ground() -> Markup {
 /// Returns plots of ln E of each check of a row from look to look, in units of the limit at which it fails; nothing
 /// without looks of the gate.
 pub fn evidence(findings: &[&Finding]) -> Markup {
-    let asked = findings.iter().copied().filter(|finding| !finding.path.is_empty());
-    let [first, last] = ends(asked.clone().flat_map(|one| one.path.iter().map(|look| look[0])));
+    let requested = findings.iter().copied().filter(|finding| !finding.path.is_empty());
+    let [first, last] = ends(requested.clone().flat_map(|one| one.path.iter().map(|look| look[0])));
     let line = |finding: &Finding| {
         let limit = finding.gate?.ln_e_limit;
         let point = |&[draws, ln_e]: &[f64; 2]| [draws.log10(), ln_e / limit];
@@ -75,7 +75,7 @@ pub fn evidence(findings: &[&Finding]) -> Markup {
             points: finding.path.iter().map(point).collect(),
         })
     };
-    let lines: Vec<SparkLine> = asked.filter_map(line).collect();
+    let lines: Vec<SparkLine> = requested.filter_map(line).collect();
     if lines.is_empty() {
         return html! {};
     }

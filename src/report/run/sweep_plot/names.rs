@@ -130,10 +130,13 @@ mod tests {
 
     #[test]
     fn curves_that_are_apart_are_named() {
-        let found = named(&[course("upper", [60.0, 60.0]), course("lower", [240.0, 200.0])]);
-        assert_eq!(found.len(), 2);
-        assert!(found[0].0 == "upper" && (found[0].1[1] - 60.0).abs() <= AWAY[0], "{found:?}");
-        assert!(found[1].1[0] > 250.0, "{found:?}");
+        let finding = named(&[course("upper", [60.0, 60.0]), course("lower", [240.0, 200.0])]);
+        assert_eq!(finding.len(), 2);
+        assert!(
+            finding[0].0 == "upper" && (finding[0].1[1] - 60.0).abs() <= AWAY[0],
+            "{finding:?}"
+        );
+        assert!(finding[1].1[0] > 250.0, "{finding:?}");
     }
 
     #[test]

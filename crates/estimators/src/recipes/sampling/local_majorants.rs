@@ -58,9 +58,9 @@ impl FromSettings for LocalMajorants {
             (false, true) => {
                 let cells = settings.counts("grid", 1..=4096)?;
                 if cells.iter().product::<usize>() > MAX_CELLS {
-                    let found =
+                    let actual =
                         format!("{} × {} × {} cells are too many", cells[0], cells[1], cells[2]);
-                    settings.fault("grid", found, "take 1e7 at most");
+                    settings.fault("grid", actual, "take 1e7 at most");
                     return None;
                 }
                 let bounded = match body {

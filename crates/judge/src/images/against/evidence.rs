@@ -24,7 +24,7 @@ use theory::parallel;
 /// Sums over the passes of both stacks, for every value.
 pub(super) struct PassSums<'a> {
     stacks: [&'a Stack; 2],
-    wanted: &'a ImageOptions,
+    required: &'a ImageOptions,
     is_free: bool,
     rounding: f64,
     units: Vec<f64>,
@@ -40,7 +40,7 @@ impl<'a> PassSums<'a> {
         stack: &'a Stack,
         reference: &'a Stack,
         rounding: f64,
-        wanted: &'a ImageOptions,
+        required: &'a ImageOptions,
         is_free: bool,
     ) -> Result<Self, ImageError> {
         let size = stack.size;
@@ -59,7 +59,7 @@ impl<'a> PassSums<'a> {
                 }
             }
         }
-        if units.iter().all(|&unit| unit == 0.0) && wanted.tolerance.is_none() {
+        if units.iter().all(|&unit| unit == 0.0) && required.tolerance.is_none() {
             return Err(ImageError::NoUnit);
         }
         units.iter_mut().filter(|unit| **unit == 0.0).for_each(|unit| *unit = 1.0);
@@ -76,7 +76,7 @@ impl<'a> PassSums<'a> {
         let values = 0..size.values();
         let together = [values.clone().map(all).collect(), values.map(square).collect()];
         let stacks = [stack, reference];
-        Ok(Self { stacks, wanted, is_free, rounding, units, means, variances, together })
+        Ok(Self { stacks, required, is_free, rounding, units, means, variances, together })
     }
 
     fn passes(&self) -> [f64; 2] {
@@ -168,21 +168,21 @@ impl<'a> PassSums<'a> {
         let is_free = self.is_free || places.len() == 1;
         let variance = first + second;
         let error = if is_free { (variance / pixels).sqrt() } else { self.welch(&places) };
-        let mut found = Tile::new(part, [truth, mean, error]);
+        let mut finding = Tile::new(part, [truth, mean, error]);
         let y: Vec<f64> =
             places.iter().map(|&i| (self.means[0][i] - self.means[1][i]) / unit).collect();
         let floor = self.rounding * truth.abs() / unit;
         if variance == 0.0 {
             let slack = slack(floor);
             let is_same = y.iter().all(|y| y.abs() <= slack);
-            return if is_same { found.without_doubt(slack) } else { found };
+            return if is_same { finding.without_doubt(slack) } else { finding };
         }
         // Error of either variance: a stack that missed rare values underestimates its own.
         let pairs = self.stacks.map(|stack| (stack.passes / 2) as f64 * pixels);
         let relative = (q[0] / pairs[0]).max(q[1] / pairs[1]);
         let estimate = Estimate { variance: variance / (unit * unit), error: relative };
         if is_free && relative.is_finite() {
-            found.ln_e = estimate.ln_e(&y, floor);
+            finding.ln_e = estimate.ln_e(&y, floor);
         }
         let tail = 0.025 / count.max(1) as f64;
         let degrees = passes[0].min(passes[1]) - 1.0;
@@ -192,21 +192,21 @@ impl<'a> PassSums<'a> {
                 let upper = estimate.upper(MISS).map(|v| (v / pixels).sqrt());
                 (upper, upper_quantile(MISS) + upper_quantile(tail))
             }
-            (false, Some(law)) => {
-                let quantile = |tail: f64| -law.inverse_cdf(tail);
+            (false, Some(density)) => {
+                let quantile = |tail: f64| -density.inverse_cdf(tail);
                 (Some(error / unit), quantile(MISS) + quantile(tail))
             }
             (false, None) => (None, 0.0),
         };
         if let Some(error) = bound.filter(|error| *error > 0.0) {
             let tail = |z: f64| match (&student, is_free) {
-                (Some(law), false) => law.cdf(-z),
+                (Some(density), false) => density.cdf(-z),
                 _ => upper_tail(z),
             };
-            found.promise(self.wanted.tolerance, is_whole, quantiles, [error, unit], tail);
-            found.plan_by_error(self.stacks[0].passes, [first, second], quantiles * error);
+            finding.promise(self.required.tolerance, is_whole, quantiles, [error, unit], tail);
+            finding.plan_by_error(self.stacks[0].passes, [first, second], quantiles * error);
         }
-        found
+        finding
     }
 
     /// Returns the standard error of x̄ − ȳ of averages of whole passes.

@@ -78,12 +78,12 @@ pub fn compare(
     stack: &Stack,
     reference: &Stack,
     terms: Terms,
-    wanted: &ImageOptions,
+    required: &ImageOptions,
 ) -> Result<Judgement, ImageError> {
-    wanted.check()?;
+    required.check()?;
     check(stack, reference, terms)?;
-    let (size, alpha) = (stack.size, wanted.alpha);
-    let tile = wanted.tile(size, stack.passes.min(reference.passes), NOISY_VALUES);
+    let (size, alpha) = (stack.size, required.alpha);
+    let tile = required.tile(size, stack.passes.min(reference.passes), NOISY_VALUES);
     let mut judgement = Judgement::new(stack, alpha, tile);
     (judgement.refuted_by, judgement.refuting) = refuted(stack, |_, value| value.is_finite());
     judgement.neighbours = either([stack, reference].map(|stack| neighbours_of(stack, alpha)));
@@ -113,7 +113,7 @@ pub fn compare(
     };
     let mut differing = 0;
     if judgement.refuting == 0 && !judgement.order.is_refuted() {
-        let evidence = PassSums::new(stack, reference, terms.rounding, wanted, is_free)?;
+        let evidence = PassSums::new(stack, reference, terms.rounding, required, is_free)?;
         differing = test([stack, reference], &evidence, &mut comparison, &mut judgement);
     }
     judgement.comparison = Some(comparison.clone());
@@ -141,12 +141,13 @@ fn test(
     let level = if comparison.is_same_distribution { main_share(1) * alpha } else { alpha };
     let (mut all, adjusted) = if distinct(rows[0], rows[1]) >= 2.0 / level {
         let (values, prior) = evidence.rows(&parts);
-        let found = Groups::new(values, rows, &prior).compare(level, 1);
-        (comparison.method, comparison.permutations) = (ComparisonMethod::Permutation, found.deals);
+        let finding = Groups::new(values, rows, &prior).compare(level, 1);
+        (comparison.method, comparison.permutations) =
+            (ComparisonMethod::Permutation, finding.deals);
         let (values, prior) = evidence.spreads();
         let spread = Groups::new(values, rows, &[prior]).compare(SIDE_SHARE * alpha, 2);
         comparison.spread_p = spread.p[0];
-        (evidence.tiles(&parts, count, Some(&found.p)), found.adjusted)
+        (evidence.tiles(&parts, count, Some(&finding.p)), finding.adjusted)
     } else {
         let all = evidence.tiles(&parts, count, None);
         if all.iter().any(|tile| tile.p.is_some()) {
@@ -168,14 +169,14 @@ fn check(stack: &Stack, reference: &Stack, terms: Terms) -> Result<(), ImageErro
     if reference.size != stack.size {
         return Err(ImageError::Differ {
             file: "the stack of the reference".to_owned(),
-            found: reference.size,
+            actual: reference.size,
             other: "a pass".to_owned(),
             expected: stack.size,
         });
     }
     if !(terms.rounding >= 0.0 && terms.rounding.is_finite()) {
         let (what, value) = ("rounding", terms.rounding);
-        return Err(ImageError::Number { what, value, wanted: "a finite number, 0 or more" });
+        return Err(ImageError::Number { what, value, required: "a finite number, 0 or more" });
     }
     let passes = 0..reference.passes;
     passes.into_iter().try_for_each(|pass| {

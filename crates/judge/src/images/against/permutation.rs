@@ -118,12 +118,12 @@ impl Groups {
         // A deal adds up in another order, with other rounding.
         let limits: Vec<f64> = t.iter().map(|t| t.abs() * (1.0 - 1e-9)).collect();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 200,000
-        let wanted = ((ENOUGH as f64 / alpha).ceil().min(MAX_DEALS as f64) as u64).max(MIN_DEALS);
+        let required = ((ENOUGH as f64 / alpha).ceil().min(MAX_DEALS as f64) as u64).max(MIN_DEALS);
         let each = MIN_DEALS.div_ceil(PARTS);
         let (mut above, mut largest) = (vec![0_u64; t.len()], vec![0_u64; t.len()]);
         let mut deals = 0;
         let top = order.last().copied();
-        while deals < wanted && top.is_some_and(|top| deals == 0 || largest[top] < ENOUGH) {
+        while deals < required && top.is_some_and(|top| deals == 0 || largest[top] < ENOUGH) {
             let parts = parallel::numbered(PARTS, |part| {
                 let block = deals / each + part;
                 let mut rng = Address { seed, experiment: 1, block, lane: 0 }.stream();
@@ -136,12 +136,12 @@ impl Groups {
                         rows.swap(place, other.min(all - 1));
                     }
                     let dealt = self.statistics(&rows[..self.rows[0]]);
-                    let mut most: f64 = 0.0;
+                    let mut maximum: f64 = 0.0;
                     for &column in &order {
                         let size = dealt[column].abs();
-                        most = most.max(size);
+                        maximum = maximum.max(size);
                         counts.0[column] += u64::from(size >= limits[column]);
-                        counts.1[column] += u64::from(most >= limits[column]);
+                        counts.1[column] += u64::from(maximum >= limits[column]);
                     }
                 }
                 counts
@@ -154,10 +154,10 @@ impl Groups {
         }
         let share = |count: u64| (1 + count) as f64 / (1 + deals) as f64;
         let mut adjusted = vec![1.0; t.len()];
-        let mut least: f64 = 0.0;
+        let mut minimum: f64 = 0.0;
         for &column in order.iter().rev() {
-            least = least.max(share(largest[column]));
-            adjusted[column] = least;
+            minimum = minimum.max(share(largest[column]));
+            adjusted[column] = minimum;
         }
         ColumnPValues { p: above.into_iter().map(share).collect(), t, adjusted, deals }
     }
@@ -178,9 +178,9 @@ mod tests {
         let (mut alone, mut together) = (0, 0);
         for seed in 0..200 {
             let groups = Groups::new(rows(seed, 12, 5, 0.0), [6, 6], &[0.05; 5]);
-            let found = groups.compare(0.1, 1);
-            alone += usize::from(found.p[0] <= 0.1);
-            together += usize::from(found.adjusted.iter().any(|&p| p <= 0.1));
+            let finding = groups.compare(0.1, 1);
+            alone += usize::from(finding.p[0] <= 0.1);
+            together += usize::from(finding.adjusted.iter().any(|&p| p <= 0.1));
         }
         // Binomial(200, 0.1): 20 ± 4.2.
         assert!((4..=37).contains(&alone) && (4..=37).contains(&together), "{alone} {together}");
@@ -190,9 +190,9 @@ mod tests {
     fn a_shift_of_one_column_is_found_there() {
         let mut values = rows(3, 40, 4, 0.0);
         values.iter_mut().step_by(4).take(20).for_each(|x| *x += 0.6);
-        let found = Groups::new(values, [20, 20], &[0.05; 4]).compare(1e-3, 1);
-        assert!(found.adjusted[0] <= 1e-3 && found.t[0] > 4.0, "{found:?}");
-        assert!(found.adjusted[1..].iter().all(|&p| p > 1e-3), "{found:?}");
+        let finding = Groups::new(values, [20, 20], &[0.05; 4]).compare(1e-3, 1);
+        assert!(finding.adjusted[0] <= 1e-3 && finding.t[0] > 4.0, "{finding:?}");
+        assert!(finding.adjusted[1..].iter().all(|&p| p > 1e-3), "{finding:?}");
     }
 
     #[test]
@@ -201,8 +201,8 @@ mod tests {
         assert_eq!((distinct(2, 2), distinct(2, 3)), (3.0, 10.0));
         assert!((distinct(8, 8) - 6435.0).abs() < 1e-9);
         // The rows of both groups are as far apart as possible: 1 of 3 deals.
-        let found = Groups::new(vec![0.0, 0.1, 5.0, 5.1], [2, 2], &[0.0]).compare(1e-3, 1);
-        assert!((found.p[0] - 1.0 / 3.0).abs() < 0.1, "{found:?}");
+        let finding = Groups::new(vec![0.0, 0.1, 5.0, 5.1], [2, 2], &[0.0]).compare(1e-3, 1);
+        assert!((finding.p[0] - 1.0 / 3.0).abs() < 0.1, "{finding:?}");
         let flat = Groups::new(vec![0.3; 6], [3, 3], &[0.0]).compare(1e-3, 1);
         assert_eq!((flat.t[0], flat.p[0]), (0.0, 1.0));
     }

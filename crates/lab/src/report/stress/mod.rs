@@ -24,9 +24,9 @@ const COLUMNS: &[Shown] = shown!(&TrialRow:
 );
 
 /// Returns the tables for the screen.
-pub fn table(found: &Stress, pen: Pen) -> String {
+pub fn table(computed: &Stress, pen: Pen) -> String {
     let mut text = String::new();
-    let rows: Vec<&TrialRow> = found.rows.iter().collect();
+    let rows: Vec<&TrialRow> = computed.rows.iter().collect();
     text.push_str(&judged(&rows, COLUMNS, ("holds", ["yes", "NO"]), |row| row.holds(), pen));
     for row in rows.iter().filter(|row| !row.holds()) {
         let said = if row.is_mostly_skipped() {
@@ -40,14 +40,14 @@ pub fn table(found: &Stress, pen: Pen) -> String {
         pen.say(&mut text, Paint::Red, &said);
     }
     text.push('\n');
-    single_precision(&mut text, pen, &found.narrow.curves);
+    single_precision(&mut text, pen, &computed.narrow.curves);
     let broken = rows.iter().filter(|row| !row.holds()).count();
     let verdict = if broken == 0 {
         pen.paint(Paint::Green, &format!("all {} bounds hold", rows.len()))
     } else {
         pen.paint(Paint::Red, &format!("{broken} of {} bounds are broken", rows.len()))
     };
-    let _ = writeln!(text, "{verdict} · {} s", short(found.seconds, 3));
+    let _ = writeln!(text, "{verdict} · {} s", short(computed.seconds, 3));
     text
 }
 
@@ -85,9 +85,9 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[PrecisionCurve]) {
 }
 
 /// Returns the tables as JSON; numbers that are not finite are null.
-fn json(found: &Stress) -> Result<String, ReportError> {
+fn json(computed: &Stress) -> Result<String, ReportError> {
     let (fields, of_points) = (<&TrialRow>::of_files(), PrecisionPoint::fields());
-    let curves = found.narrow.curves.iter().map(|curve| {
+    let curves = computed.narrow.curves.iter().map(|curve| {
         let point = |row| object(&of_points[OF_CURVES..], &row);
         json!({
             "family": curve.family,
@@ -97,10 +97,10 @@ fn json(found: &Stress) -> Result<String, ReportError> {
             "points": points(curve).map(point).collect::<Vec<_>>(),
         })
     });
-    let rows = found.rows.iter().map(|row| object(&fields, &row));
+    let rows = computed.rows.iter().map(|row| object(&fields, &row));
     let document = json!({
         "schema": 1,
-        "holds": found.holds(),
+        "holds": computed.holds(),
         "rows": rows.collect::<Vec<_>>(),
         "single_precision": curves.collect::<Vec<_>>(),
     });
@@ -152,16 +152,16 @@ table! {
 }
 
 /// Returns the tables as CSV and JSON and the plot of single precision, all below `stress/`.
-pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
-    let points = found.narrow.curves.iter().flat_map(points);
+pub fn artifacts(computed: &Stress) -> Result<Vec<Artifact>, ReportError> {
+    let points = computed.narrow.curves.iter().flat_map(points);
     let path = |name: &str| format!("{FOLDER}/{name}");
     let mut all = vec![
-        fields::artifact(&path("stress.csv"), &<&TrialRow>::of_files(), &found.rows)?,
-        Artifact::text(path("stress.json"), json(found)?),
+        fields::artifact(&path("stress.csv"), &<&TrialRow>::of_files(), &computed.rows)?,
+        Artifact::text(path("stress.json"), json(computed)?),
         fields::artifact(&path("single-precision.csv"), &PrecisionPoint::fields(), points)?,
-        Artifact::text(path("report.html"), html::text(found)?),
+        Artifact::text(path("report.html"), html::text(computed)?),
     ];
-    let sheet = plot::figure(&found.narrow.curves)?;
+    let sheet = plot::figure(&computed.narrow.curves)?;
     all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);
     Ok(all)
 }

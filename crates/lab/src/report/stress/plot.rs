@@ -26,9 +26,9 @@ pub fn figure(curves: &[PrecisionCurve]) -> Result<Sheet, ReportError> {
     let mut families: Vec<&str> = curves.iter().map(|curve| curve.family).collect();
     families.dedup();
     let panels = Along::ALL.map(|along| first_to_fail(curves, &families, along));
-    let most = panels.iter().map(Vec::len).max().unwrap_or(0);
+    let maximum = panels.iter().map(Vec::len).max().unwrap_or(0);
     let width = LEFT + 2.0 * PITCH + PANEL[0] + 26.0;
-    let size = [width, TOP + PANEL[1] + BELOW + (most as f64 + 0.5) * LINE];
+    let size = [width, TOP + PANEL[1] + BELOW + (maximum as f64 + 0.5) * LINE];
     let title = "Single precision: its bias beside the statistical error of 1e8 draws";
     let points = "Points: |mean of X₂₄ − X₅₃|/E[X] over √(V/1e8)/E[X], from the same random words; bars: two standard errors of \
                   the bias. Above 1, rounding outgrows the noise.";

@@ -165,9 +165,9 @@ pub fn compare(
     scene: &StressScene,
     (seed, budget): (u64, f64),
 ) -> Option<BothPrecisions> {
-    let (setup, prediction) = prepared(&scene.case(entry.asked, entry.written))?;
-    let wanted = entry.asked[3];
-    let is_wanted = |channel: &Channel| wanted.is_empty() || channel.name == wanted;
+    let (setup, prediction) = prepared(&scene.case(entry.requested, entry.written))?;
+    let expected = entry.requested[3];
+    let is_wanted = |channel: &Channel| expected.is_empty() || channel.name == expected;
     let channel = prediction.channels.iter().position(is_wanted)?;
     let subject = StressSubject { scene, setup: &*setup, channel, is_kept: entry.is_kept };
     let Channel { truth, moments, .. } = &prediction.channels[channel];

@@ -351,8 +351,8 @@ impl<N: Precision> Lane for Traced<'_, N> {
     }
 
     #[inline(always)]
-    fn where_bits(words: N::Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
-        Self::plain(N::where_bits(words, bits, wanted, yes.number, no.number))
+    fn where_bits(words: N::Words, bits: u64, expected: u64, yes: Self, no: Self) -> Self {
+        Self::plain(N::where_bits(words, bits, expected, yes.number, no.number))
     }
 
     #[inline(always)]

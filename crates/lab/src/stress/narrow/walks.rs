@@ -270,7 +270,7 @@ pub struct FamilyEntry {
     /// Quantities that are varied.
     pub varied: &'static [Along],
     /// The problem.
-    pub asked: CaseParts,
+    pub requested: CaseParts,
     /// The estimator as a case has it.
     pub written: &'static str,
     /// True if the only decisions of a walk, if any, end it with the score 0; it is then kept from its end, see
@@ -281,12 +281,12 @@ pub struct FamilyEntry {
 }
 
 const fn entry(
-    (name, varied, asked): (&'static str, &'static [Along], CaseParts),
+    (name, varied, requested): (&'static str, &'static [Along], CaseParts),
     written: &'static str,
     is_kept: bool,
     draws: &'static dyn InBoth,
 ) -> FamilyEntry {
-    FamilyEntry { name, varied, asked, written, is_kept, draws }
+    FamilyEntry { name, varied, requested, written, is_kept, draws }
 }
 
 const EVERY: &[Along] = &Along::ALL;
@@ -313,8 +313,8 @@ const INFINITE: CaseParts = [
     "squared distance",
 ];
 
-const fn at_end(asked: CaseParts) -> CaseParts {
-    let [problem, medium, settings, _] = asked;
+const fn at_end(requested: CaseParts) -> CaseParts {
+    let [problem, medium, settings, _] = requested;
     [problem, medium, settings, "transmittance"]
 }
 

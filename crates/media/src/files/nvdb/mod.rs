@@ -41,19 +41,19 @@ const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read
 pub fn read(file: &[u8], name: Option<&str>) -> Result<VdbGrid, Unreadable> {
     let grids = list(file)?;
     let about = |grid: &NvdbEntry| (grid.name.clone(), grid.is_read(), grid.shown());
-    let found = chosen(&grids, name, about, CONVERT)?;
-    let Some(values) = nodes::LeafValues::of(found.number) else {
-        let message = format!("its grid {} has the type {}", shown(&found.name), found.kind);
+    let actual = chosen(&grids, name, about, CONVERT)?;
+    let Some(values) = nodes::LeafValues::of(actual.number) else {
+        let message = format!("its grid {} has the type {}", shown(&actual.name), actual.kind);
         return wrong(message, CONVERT);
     };
-    let [from, to] = found.place;
-    let grid = unpacking::unpacked(&file[from..to], found.codec, found.size)?;
+    let [from, to] = actual.place;
+    let grid = unpacking::unpacked(&file[from..to], actual.codec, actual.size)?;
     let tree = nodes::read(&grid, values)?;
-    if tree.active != found.active {
-        let (said, found) = (found.active, tree.active);
-        return damaged(format!("{said} voxels are announced to be active, and {found} are"));
+    if tree.active != actual.active {
+        let (said, actual) = (actual.active, tree.active);
+        return damaged(format!("{said} voxels are announced to be active, and {actual} are"));
     }
-    let (name, class) = (found.name.clone(), found.class.clone());
+    let (name, class) = (actual.name.clone(), actual.class.clone());
     Ok(VdbGrid { name, class, transform: transform(&grid)?, tree })
 }
 

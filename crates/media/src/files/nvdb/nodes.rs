@@ -82,9 +82,9 @@ pub(super) fn read(bytes: &[u8], values: LeafValues) -> Result<Tree, Unreadable>
 
 /// The position at a distance from another.
 fn from(place: usize, distance: i64) -> Result<usize, Unreadable> {
-    let found = i64::try_from(place).ok().and_then(|place| place.checked_add(distance));
-    match found.and_then(|found| usize::try_from(found).ok()) {
-        Some(found) => Ok(found),
+    let actual = i64::try_from(place).ok().and_then(|place| place.checked_add(distance));
+    match actual.and_then(|actual| usize::try_from(actual).ok()) {
+        Some(actual) => Ok(actual),
         None => damaged(format!("a node stands {distance} bytes from byte {place} on")),
     }
 }

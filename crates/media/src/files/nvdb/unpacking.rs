@@ -18,7 +18,7 @@ pub(super) fn unpacked<'a>(
     size: u64,
 ) -> Result<Cow<'a, [u8]>, Unreadable> {
     let size = usize::try_from(size).unwrap_or(usize::MAX);
-    let found = match codec {
+    let actual = match codec {
         "zip" => {
             let packed = piece(&mut Bytes::new(stored))?;
             match miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, size) {
@@ -33,21 +33,21 @@ pub(super) fn unpacked<'a>(
                     stored.len()
                 ));
             }
-            let (mut found, mut bytes) = (vec![0; size], Bytes::new(stored));
-            for into in found.chunks_mut(PIECE) {
+            let (mut actual, mut bytes) = (vec![0; size], Bytes::new(stored));
+            for into in actual.chunks_mut(PIECE) {
                 unpack_blosc(piece(&mut bytes)?, into)?;
             }
-            Cow::Owned(found)
+            Cow::Owned(actual)
         }
         _ => Cow::Borrowed(stored),
     };
-    if found.len() != size {
+    if actual.len() != size {
         return damaged(format!(
             "a grid of {size} bytes is announced, and {} are there",
-            found.len()
+            actual.len()
         ));
     }
-    Ok(found)
+    Ok(actual)
 }
 
 /// Bytes with their length before them.

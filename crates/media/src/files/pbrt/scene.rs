@@ -222,8 +222,8 @@ impl Medium {
             let help = "give whole numbers above 0 as \"integer nx\", \"ny\" and \"nz\"";
             return refuse(&format!("has {counts:?} samples along its axes"), help);
         };
-        let wanted = [y, z].iter().try_fold(x, |product, &n| product.checked_mul(n));
-        if wanted != Some(density.len() as u64) {
+        let expected = [y, z].iter().try_fold(x, |product, &n| product.checked_mul(n));
+        if expected != Some(density.len() as u64) {
             let what = format!("has {} densities for {x} × {y} × {z} samples", density.len());
             return refuse(&what, "give nx · ny · nz of them, x fastest");
         }

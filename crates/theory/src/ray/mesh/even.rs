@@ -52,7 +52,7 @@ impl Mesh {
         });
         meshes.find(|mesh| {
             let mut pairs = seen(mesh).into_iter().zip(exact).zip(AGREEMENT);
-            pairs.all(|((found, exact), most)| (found - exact).abs() <= most * exact)
+            pairs.all(|((result, exact), maximum)| (result - exact).abs() <= maximum * exact)
         })
     }
 }

@@ -21,7 +21,7 @@ impl Spectrum {
     /// Cells with proportional n are merged.
     pub(super) fn cells(&self) -> Option<Vec<(f64, Vec<f64>)>> {
         let mut cells = Vec::<CellRates>::new();
-        let scale = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x));
+        let scale = self.majorants.iter().fold(0.0f64, |maximum, &x| maximum.max(x));
         for (panel, here) in self.mesh.numbered() {
             let of_channel = |nulls: &Vec<f64>| {
                 let n = nulls[here.clone()].to_vec();
@@ -39,7 +39,7 @@ impl Spectrum {
 /// Merges an interval with the cells that have proportional rates. An interval with rates of at most `nothing` is
 /// left out.
 pub fn join(cells: &mut Vec<CellRates>, nothing: f64, length: f64, rates: &[f64]) {
-    let largest = rates.iter().fold(0.0f64, |most, &n| most.max(n));
+    let largest = rates.iter().fold(0.0f64, |maximum, &n| maximum.max(n));
     if largest <= nothing {
         return;
     }
@@ -151,8 +151,8 @@ mod tests {
                 let mut k = vec![0.0; 2];
                 k[channel] = f64::from(power);
                 let unit = (-depths[channel] * f64::from(power)).exp();
-                let found = spectrum.moment(&k).expect("cells") / unit;
-                assert!((found / exact - 1.0).abs() < 1e-12, "{channel}, {power}: {found}");
+                let result = spectrum.moment(&k).expect("cells") / unit;
+                assert!((result / exact - 1.0).abs() < 1e-12, "{channel}, {power}: {result}");
             }
         }
     }

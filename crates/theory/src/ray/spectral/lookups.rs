@@ -33,11 +33,11 @@ impl Spectrum {
             Tracker::InTurn { delta: true } => {
                 (0..self.channels()).fold([0.0; 4], |sum, channel| added(sum, own(channel, true)))
             }
-            Tracker::Tracking(chance) => {
+            Tracker::Tracking(probability) => {
                 let majorant = self.majorants[0];
                 self.survived(majorant, &|n| {
                     let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
-                    chance.of_null(&shares)
+                    probability.of_null(&shares)
                 })
             }
         };
@@ -55,14 +55,14 @@ impl Spectrum {
 /// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with a probability,
 /// given at every node.
 pub fn survived(mesh: &Mesh, rate: f64, survival: &dyn Fn(usize) -> f64) -> [f64; 4] {
-    let mut found = Survival::default();
+    let mut result = Survival::default();
     for (panel, nodes) in mesh.numbered() {
         let q: Vec<f64> = nodes.map(|i| rate * survival(i)).collect();
         let lost: Vec<f64> = q.iter().map(|q| rate - q).collect();
         let rates = vec![rate; q.len()];
-        found.add(mesh.rule(), panel.span.length(), [&rates, &lost, &q]);
+        result.add(mesh.rule(), panel.span.length(), [&rates, &lost, &q]);
     }
-    found.factorial()
+    result.factorial()
 }
 
 /// Factorial moments of the sum of two independent numbers.

@@ -111,11 +111,11 @@ impl Spectrum {
                         functions.push(share.iter().map(|n| 1.0 / n.max(1e-9)).collect());
                     }
                 }
-                Tracker::Tracking(chance) => functions.push(
+                Tracker::Tracking(choice) => functions.push(
                     (0..panel.t.len())
                         .map(|i| {
                             let here: Vec<f64> = shares.iter().map(|share| share[i]).collect();
-                            1.0 / chance.of_null(&here).max(1e-9)
+                            1.0 / choice.of_null(&here).max(1e-9)
                         })
                         .collect(),
                 ),
@@ -157,14 +157,14 @@ impl Spectrum {
         let total = k.iter().fold(none, |sum, &k| sum + k);
         let product = |n: &[f64]| n.iter().zip(k).fold(one, |of, (&n, k)| of * k.power_of(n));
         // Times the density of an event, to the power 1 − K; 0 where the event does not occur.
-        let weighted = |found: S, density: f64| {
-            if found.leading() == 0.0 { none } else { found / (total - one).power_of(density) }
+        let weighted = |result: S, density: f64| {
+            if result.leading() == 0.0 { none } else { result / (total - one).power_of(density) }
         };
         let depth = k.iter().zip(&self.majorants).fold(none, |sum, (&k, own)| sum + k * *own);
         let depth = depth * self.length();
         let of_heroes = |exponent: &dyn Fn(usize) -> S| {
             let heroes = self.hero.iter().enumerate();
-            heroes.fold(none, |sum, (hero, &chance)| sum + exponent(hero).exp() * chance)
+            heroes.fold(none, |sum, (hero, &probability)| sum + exponent(hero).exp() * probability)
         };
         // A single channel by its own walk, without the factor of its choice.
         let own = |channel: usize, k: S, delta: bool| {
@@ -178,10 +178,11 @@ impl Spectrum {
             let loss = |n: &[f64]| (k.power_of(n[channel] / majorant) - one) * majorant;
             self.integrate(&loss).exp()
         };
-        let found = match self.tracker {
+        let result = match self.tracker {
             Tracker::Independent { delta } => {
-                let mut asked = (0..self.channels()).filter(|&channel| k[channel].leading() > 0.0);
-                match (asked.next(), asked.next()) {
+                let mut requested =
+                    (0..self.channels()).filter(|&channel| k[channel].leading() > 0.0);
+                match (requested.next(), requested.next()) {
                     (Some(channel), None) => {
                         (one - total).power_of(self.hero[channel]) * own(channel, total, delta)
                     }
@@ -204,16 +205,16 @@ impl Spectrum {
                 let atoms = self.atoms.as_ref()?.iter();
                 atoms.fold(none, |sum, (probability, x)| sum + product(x) * *probability)
             }
-            Tracker::Tracking(chance) => {
+            Tracker::Tracking(choice) => {
                 let majorant = self.majorants[0];
                 let loss = |n: &[f64]| {
                     let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
-                    (weighted(product(&shares), chance.of_null(&shares)) - one) * majorant
+                    (weighted(product(&shares), choice.of_null(&shares)) - one) * majorant
                 };
                 self.integrate(&loss).exp()
             }
         };
-        Some(found)
+        Some(result)
     }
 
     /// Relative rounding error of `E[X_λ^k]`: walks that are weighted by other channels have exponents, which may
@@ -249,12 +250,12 @@ impl Spectrum {
                 };
                 heroes.map(of).fold(0.0, f64::max)
             }
-            Tracker::Tracking(chance) => {
+            Tracker::Tracking(choice) => {
                 let majorant = self.majorants[0];
                 let of_null = |n: &[f64]| {
                     let shares: Vec<f64> = n.iter().map(|n| n / majorant).collect();
-                    let chance = chance.of_null(&shares);
-                    [majorant * chance, 1.0 / chance]
+                    let choice = choice.of_null(&shares);
+                    [majorant * choice, 1.0 / choice]
                 };
                 majorant * self.length() + gathered(&of_null)
             }

@@ -39,8 +39,8 @@ impl Spectrum {
             let (xxy, xyy) = (expected(&[x, x, y])?, expected(&[x, y, y])?);
             let (xx, yy) = (expected(&[x, x])?, expected(&[y, y])?);
             let mixed = [xy, xxy, xyy, expected(&[x, x, y, y])?];
-            let found = Covariance::of_raw([i, i + 1], [s, t], [xx, yy], mixed);
-            Some(Covariance { variance: found.variance.max(0.0), ..found })
+            let result = Covariance::of_raw([i, i + 1], [s, t], [xx, yy], mixed);
+            Some(Covariance { variance: result.variance.max(0.0), ..result })
         };
         let covariances = (0..forms.len() - 1).filter_map(covariance).collect();
         let lookups = Some(self.lookups());
@@ -107,7 +107,7 @@ impl Spectrum {
     }
 
     fn most_collisions(&self) -> f64 {
-        self.majorants.iter().fold(0.0f64, |most, &x| most.max(x)) * self.length()
+        self.majorants.iter().fold(0.0f64, |maximum, &x| maximum.max(x)) * self.length()
     }
 
     /// `E[Π (a·X)]` over linear forms of the channels.

@@ -107,10 +107,10 @@ mod tests {
             let grid = NodeGrid::new(2.0, size);
             let flights = grid.operator(|d| (-d).exp());
             let exact = |u: f64| 0.5 * (u.sin() + u.cos() - (-u).exp());
-            let found = flights.over(true, &grid.values(f64::cos));
+            let result = flights.over(true, &grid.values(f64::cos));
             let mirrored = flights.over(false, &grid.values(|v| (2.0 - v).cos()));
             for (i, &u) in grid.points.iter().enumerate() {
-                assert!((found[i] - exact(u)).abs() < 1e-14, "{u}");
+                assert!((result[i] - exact(u)).abs() < 1e-14, "{u}");
                 assert!((mirrored[i] - exact(2.0 - u)).abs() < 1e-14, "{u}");
             }
             assert!((grid.integral(&grid.values(f64::cos)) - 2f64.sin()).abs() < 1e-14);

@@ -98,10 +98,10 @@ impl<'a> Chain<'a> {
                     let kernels = if is_hit { 1..1 } else { 1..self.count };
                     let connected: Vec<f64> =
                         kernels.map(|kernel| self.connected(&path, s - 1, kernel)).collect();
-                    let found = if is_hit { &whole[..] } else { &connected };
+                    let result = if is_hit { &whole[..] } else { &connected };
                     let factors = factors(&path, s);
                     for (k, sum) in sums.iter_mut().enumerate().skip(1) {
-                        *sum += factors[k] * found[k.min(found.len()) - 1];
+                        *sum += factors[k] * result[k.min(result.len()) - 1];
                     }
                 }
             }

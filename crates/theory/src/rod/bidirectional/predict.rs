@@ -26,17 +26,17 @@ pub fn predict(
     with_distributions: bool,
 ) -> Prediction {
     let [coarse, fine] = resolutions(scene.depth.value);
-    let found = powers(scene, rules, fine);
-    let rough = if with_distributions { powers(scene, rules, coarse) } else { found.clone() };
+    let result = powers(scene, rules, fine);
+    let rough = if with_distributions { powers(scene, rules, coarse) } else { result.clone() };
     let names = names(scene, rules);
     let is_certain = |&(order, s, _): &(usize, usize, _)| {
         order == 0 && s == 1 && rules.connection == Connection::Exact
     };
     let certain: Vec<bool> = names.iter().map(is_certain).collect();
-    let each = found.iter().zip(&rough).zip(names).zip(&certain);
+    let each = result.iter().zip(&rough).zip(names).zip(&certain);
     let mut channels: Vec<Channel> = each
-        .map(|(((found, rough), (order, _, name)), &is_certain)| {
-            let channel = channel(scene.depth, order, [found, rough], is_certain);
+        .map(|(((result, rough), (order, _, name)), &is_certain)| {
+            let channel = channel(scene.depth, order, [result, rough], is_certain);
             Channel { name, ..channel }
         })
         .collect();
@@ -50,7 +50,7 @@ pub fn predict(
             value: 0.0,
             variance: variances[i - 1] * variances[i],
         }));
-        let whole = [&found, &rough].map(|all| all.iter().copied().fold(NOTHING, added));
+        let whole = [&result, &rough].map(|all| all.iter().copied().fold(NOTHING, added));
         let order = *scene.orders.end();
         let is_certain = certain.iter().all(|&is_certain| is_certain);
         let sum = channel(scene.depth, order, [&whole[0], &whole[1]], is_certain);
@@ -65,7 +65,7 @@ pub fn predict(
             covariances.push(Covariance { pair: [last, last + 1], value, variance });
         }
         let moments = sum.moments.filter(|_| !rules.is_shared);
-        let variance_bound = rules.is_shared.then(|| most_of_sum([&found, &rough]));
+        let variance_bound = rules.is_shared.then(|| most_of_sum([&result, &rough]));
         channels.push(Channel { name: "sum".into(), moments, variance_bound, ..sum });
     }
     if !rules.has_shares && channels.len() > 1 {

@@ -47,18 +47,18 @@ pub fn predict(
     with_distributions: bool,
 ) -> Prediction {
     let answer = answer(mesh, problem);
-    let found = WalkMoments::of(mesh, problem, sampling, techniques, with_distributions);
-    let Some(WalkMoments { lookups, shadow_lookups, raw }) = found else {
+    let result = WalkMoments::of(mesh, problem, sampling, techniques, with_distributions);
+    let Some(WalkMoments { lookups, shadow_lookups, raw }) = result else {
         return Prediction::uncounted(Channel::unbiased(answer, None, Tails::LIGHT));
     };
-    let law = CountDistribution::of_factorial(lookups);
-    Prediction { shadow_lookups, ..Prediction::single(raw.channel(answer, RESOLVED), law) }
+    let distribution = CountDistribution::of_factorial(lookups);
+    Prediction { shadow_lookups, ..Prediction::single(raw.channel(answer, RESOLVED), distribution) }
 }
 
 /// Radiance at the camera; NaN where it is unknown.
 pub fn answer(mesh: &Mesh, problem: &LitRod) -> Known {
-    let found = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
-    found.unwrap_or(Known::UNKNOWN)
+    let result = truth(mesh, &problem.rod).and_then(|result| result.first().copied());
+    result.unwrap_or(Known::UNKNOWN)
 }
 
 /// Raw moments of a draw and of its lookups.

@@ -35,7 +35,7 @@ pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<
     let flow = line.flow(1)?;
     let connections = connections(line, techniques, highest);
     let mut futures: Vec<Importance> = Vec::new();
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for k in 1..=highest {
         let source = |i: usize, node: &RodPoint| {
             let of = |vertex: &Vertex| {
@@ -49,10 +49,10 @@ pub fn scattered(line: &Line, techniques: Techniques, highest: usize) -> Option<
             connections[i].each_ref().map(of)
         };
         let future = flow.solve(&source, [0.0; 2]);
-        found.push(future.entering);
+        result.push(future.entering);
         futures.push(future);
     }
-    Some(found)
+    Some(result)
 }
 
 /// `E[F^m]` after a scattering at a node.
@@ -66,13 +66,13 @@ fn future(vertex: &Vertex, futures: &[Importance], m: usize, node: usize) -> f64
 
 /// Factorial moments of the number of lookups of a shadow ray, k = 0 … 4, at each node.
 fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> {
-    let mut found = vec![[1.0, 0.0, 0.0, 0.0, 0.0]; line.nodes().len()];
+    let mut result = vec![[1.0, 0.0, 0.0, 0.0, 0.0]; line.nodes().len()];
     match shadow {
         None | Some(Shadow::Exact) => {}
         Some(Shadow::Ratio) => {
             let rates: Vec<Vec<f64>> =
                 line.nodes().iter().map(|node| vec![node.sampling]).collect();
-            for (depth, moments) in line.to_end(&rates).iter().zip(&mut found) {
+            for (depth, moments) in line.to_end(&rates).iter().zip(&mut result) {
                 *moments = [0, 1, 2, 3, 4].map(|k| f64::powi(depth[0], k));
             }
         }
@@ -86,14 +86,14 @@ fn shadow_lookups(line: &Line, shadow: Option<Shadow>) -> Option<Vec<[f64; 5]>> 
                     [rate * before.as_ref().map_or(1.0, after), 0.0]
                 };
                 let counted = line.straight(1)?.solve(&source, [0.0; 2]);
-                for (i, moments) in found.iter_mut().enumerate() {
+                for (i, moments) in result.iter_mut().enumerate() {
                     moments[usize::from(k)] = counted.at(i)[0];
                 }
                 before = Some(counted);
             }
         }
     }
-    Some(found)
+    Some(result)
 }
 
 /// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of all lookups, and the mean number of those of shadow rays.

@@ -17,20 +17,25 @@ use crate::{Channel, CountDistribution, Prediction};
 
 /// The lookups of the walk of a hero, mixed over heroes.
 pub fn lookups(alone: &[TechniqueMoments], heroes: &[f64]) -> Option<Raw> {
-    let each = alone.iter().zip(heroes).map(|(points, chance)| Some((*chance, points.lookups?)));
+    let each =
+        alone.iter().zip(heroes).map(|(points, probability)| Some((*probability, points.lookups?)));
     colours::mixed(each.collect::<Option<Vec<_>>>()?)
 }
 
 /// Mean number of lookups of shadow rays, mixed over heroes.
 pub fn shadow_lookups(alone: &[TechniqueMoments], heroes: &[f64]) -> Option<f64> {
-    alone.iter().zip(heroes).map(|(points, chance)| Some(points.shadow_lookups? * chance)).sum()
+    alone
+        .iter()
+        .zip(heroes)
+        .map(|(points, probability)| Some(points.shadow_lookups? * probability))
+        .sum()
 }
 
 /// Prediction for one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
 pub fn independent(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
     let lookups = lookups(alone, heroes);
-    let each = alone.iter().zip(heroes).map(|(points, chance)| {
-        let raw = colours::independent(&points.raw, *chance);
+    let each = alone.iter().zip(heroes).map(|(points, probability)| {
+        let raw = colours::independent(&points.raw, *probability);
         let prediction = TechniqueMoments { raw, lookups, ..*points }.prediction();
         ([raw.0[0].value, raw.0[1].value], prediction)
     });
@@ -45,9 +50,9 @@ pub fn independent(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
 /// The channels of several predictions, and the lookups of the first.
 fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<CountDistribution>) {
     let (mut channels, mut lookups) = (Vec::new(), None);
-    for found in each {
-        lookups = lookups.or(found.lookups);
-        channels.extend(found.channels);
+    for result in each {
+        lookups = lookups.or(result.lookups);
+        channels.extend(result.channels);
     }
     (channels, lookups)
 }
@@ -63,9 +68,9 @@ pub fn balanced(alone: &[TechniqueMoments], heroes: &[f64]) -> Prediction {
     let of_first: Option<CountDistribution> = alone.first().and_then(|first| {
         TechniqueMoments { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
     });
-    let channel = |(points, chance): (&TechniqueMoments, &f64)| {
+    let channel = |(points, probability): (&TechniqueMoments, &f64)| {
         let square = points.raw.second();
-        Channel::bounded(points.truth, (square.value + square.error) / chance)
+        Channel::bounded(points.truth, (square.value + square.error) / probability)
     };
     let channels = named(alone.iter().zip(heroes).map(channel).collect());
     let (lookups, shadow_lookups) = (of_first, shadow_lookups(alone, heroes));

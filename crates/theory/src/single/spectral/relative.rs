@@ -208,15 +208,15 @@ impl<'a> Relative<'a> {
         let last = self.powers.len() - 1;
         parts[..last].fill(MOMENT);
         parts[COUNTS..].fill(LOOKUPS);
-        let found = scene.over(parts, self.cuts.clone(), &|place| self.row(place));
-        let relative = |j: usize| found.error[j] / found.value[j].abs();
+        let result = scene.over(parts, self.cuts.clone(), &|place| self.row(place));
+        let relative = |j: usize| result.error[j] / result.value[j].abs();
         let length = self.meshes[0].support().length();
-        let largest = self.rates.majorants.iter().fold(0.0f64, |most, &own| most.max(own));
+        let largest = self.rates.majorants.iter().fold(0.0f64, |maximum, &own| maximum.max(own));
         let rounding = f64::EPSILON * (1.0 + ROUNDINGS * largest * length);
-        let counted = [1, 2, 3, 4].map(|k| found.value[COUNTS + k - 1]);
+        let counted = [1, 2, 3, 4].map(|k| result.value[COUNTS + k - 1]);
         let lookups = of_heroes.or_else(|| self.escaped(counted));
         let channel = |(number, own): (usize, &TechniqueMoments)| {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| found.value[4 * number + k]);
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| result.value[4 * number + k]);
             // The mean is computed twice.
             let apart = (a / own.truth.value - 1.0).abs();
             let error = |k: usize| (rounding + apart).max(relative(4 * number + k));
@@ -229,7 +229,7 @@ impl<'a> Relative<'a> {
         let covariance = |next: usize| {
             let of = |power: usize| [next - 1, next].map(|i| points[i].raw.0[power].value);
             let first = 4 * (alone.len() + next - 1);
-            let mixed = [0, 1, 2, 3].map(|j| found.value[first + j]);
+            let mixed = [0, 1, 2, 3].map(|j| result.value[first + j]);
             Covariance::of_raw([next - 1, next], of(0), of(1), mixed)
         };
         let covariances = (1..alone.len()).map(covariance).collect();
@@ -238,14 +238,14 @@ impl<'a> Relative<'a> {
     }
 
     /// The moments of lookups with those of walks that leave the ray.
-    fn escaped(&self, found: [f64; 4]) -> Option<[f64; 5]> {
+    fn escaped(&self, result: [f64; 4]) -> Option<[f64; 5]> {
         let &[(_, walk @ Proposal::Together(_))] = self.walks.as_slice() else { return None };
         let last = self.powers.len() - 1;
         let passed = self.up_to(self.meshes[0].support().to)[last];
         let rate = self.rates.loss(walk, &self.powers[last]);
         let alive = (passed - rate * self.meshes[0].support().length()).exp();
         let left = poisson(passed);
-        let [a, b, c, d] = [1, 2, 3, 4].map(|k| found[k - 1] + alive * left[k]);
+        let [a, b, c, d] = [1, 2, 3, 4].map(|k| result[k - 1] + alive * left[k]);
         Some([1.0, a, b, c, d])
     }
 }

@@ -91,8 +91,8 @@ impl LitColumn {
         let rows: Vec<Vec<f64>> = self.nodes.iter().map(rates).collect();
         let lengths: Vec<f64> =
             (0..rows.len()).step_by(self.per_panel).map(|first| self.panel_length(first)).collect();
-        let found = self.mesh.rule().all_to_end(&lengths, &rows);
-        self.nodes.iter_mut().zip(found).for_each(|(node, beyond)| node.beyond = beyond);
+        let result = self.mesh.rule().all_to_end(&lengths, &rows);
+        self.nodes.iter_mut().zip(result).for_each(|(node, beyond)| node.beyond = beyond);
     }
 
     /// The weights of `∫` from a node to the end of its panel, for the nodes of the panel.

@@ -23,7 +23,7 @@ pub fn raw(
     resolution: &LitResolution,
 ) -> (Raw, f64) {
     let [depth, nulls] = column.whole;
-    let mut found = poisson(nulls).map(|moment| (-depth).exp() * moment);
+    let mut result = poisson(nulls).map(|moment| (-depth).exp() * moment);
     let mut of_shadow_rays = 0.0;
     for (i, node) in column.nodes.iter().enumerate() {
         let reached = node.weight * node.extinction * (-node.depth).exp();
@@ -53,11 +53,11 @@ pub fn raw(
         let scattered = added(collided, added(cast, flown));
         let a = problem.albedo;
         of_shadow_rays += reached * a * cast[1];
-        for (k, sum) in found.iter_mut().enumerate() {
+        for (k, sum) in result.iter_mut().enumerate() {
             *sum += reached * (a * scattered[k] + (1.0 - a) * collided[k]);
         }
     }
-    (found, of_shadow_rays)
+    (result, of_shadow_rays)
 }
 
 fn add(sum: &mut Raw, weight: f64, moments: Raw) {

@@ -120,7 +120,7 @@ impl ResolutionScores {
         let error = column.error(problem.light.lowest());
         let off = ROUNDINGS * f64::EPSILON + error;
         let (lookups, shadow_lookups) = lookups::raw(&column, problem, techniques, resolution);
-        let mut found = Self {
+        let mut result = Self {
             powers: [0.0; HIGHEST + 1],
             errors: [0.0; HIGHEST + 1],
             lookups,
@@ -134,9 +134,9 @@ impl ResolutionScores {
                 let moments = weights.contour.moments(line, &node.beyond, 1.0 / cosine);
                 weights.vertex(ratio, &moments, off)
             };
-            found.add(node, &directions, problem.albedo, (highest, &scattered));
+            result.add(node, &directions, problem.albedo, (highest, &scattered));
         }
-        found
+        result
     }
 
     /// Adds the contribution of scattering at a depth.

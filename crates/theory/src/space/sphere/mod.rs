@@ -110,7 +110,7 @@ impl<'a> SolvedBall<'a> {
     /// Total of scores g at each scattering, a function of the place given at the nodes: `aY` of `Y = g + K aY`.
     fn gathered(&self, score: &[f64]) -> Option<Vec<f64>> {
         let scattered: Vec<f64> = score.iter().map(|g| self.albedo * g).collect();
-        self.matrix.series(&scattered).filter(|found| found.iter().all(|x| x.is_finite()))
+        self.matrix.series(&scattered).filter(|result| result.iter().all(|x| x.is_finite()))
     }
 
     /// Adds the light along one line of sight to a row; returns the unscattered part.

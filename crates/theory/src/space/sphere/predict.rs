@@ -73,7 +73,7 @@ pub fn answer(sphere: &Sphere) -> Option<BallSolution> {
         BallLight::Environment | BallLight::Distant(_) => (Centre::Medium, -1.0),
     };
     let is_distant = matches!(sphere.light, BallLight::Distant(_));
-    let (observable, asked) = match sphere.sought {
+    let (observable, requested) = match sphere.sought {
         Sought::Radiance => {
             let (offset, from) = (sphere.offset(), sphere.begins());
             (Observable::Radiance { offset, from }, [1.0, offset, from])
@@ -86,7 +86,7 @@ pub fn answer(sphere: &Sphere) -> Option<BallSolution> {
     let extinction = |r2| sphere.extinction(r2);
     let places = (0..=32).map(|i| extinction(radius * radius * f64::from(i) / 32.0));
     let settings = [radius, core, albedo, f64::from(u8::from(is_distant))];
-    let numbers = settings.into_iter().chain(asked).chain(places);
+    let numbers = settings.into_iter().chain(requested).chain(places);
     ANSWERS.get(numbers.map(f64::to_bits).collect(), || {
         let ball = Ball { radius, centre, extinction: &extinction };
         BallSolution::new(&ball, albedo, observable, is_distant)
@@ -114,16 +114,22 @@ const UNKNOWN: BallSolution = BallSolution {
 /// Prediction for a draw that is 1 with the probability `value`, else 0. Where the probability may be 1 its variance is
 /// bounded only.
 fn all_or_nothing(value: Known) -> Prediction {
-    let chance = value.value;
-    if 1.0 - chance <= value.error {
-        return Prediction::uncounted(Channel::bounded(value, (chance + value.error).min(1.0)));
+    let probability = value.value;
+    if 1.0 - probability <= value.error {
+        return Prediction::uncounted(Channel::bounded(
+            value,
+            (probability + value.error).min(1.0),
+        ));
     }
     // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
-    let error = 4.0 * value.error / (chance * (1.0 - chance));
-    let moments = Moments::of_product(chance, [-chance.ln(); 4], error).graded(value.grade);
-    let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
+    let error = 4.0 * value.error / (probability * (1.0 - probability));
+    let moments =
+        Moments::of_product(probability, [-probability.ln(); 4], error).graded(value.grade);
+    let tails =
+        Tails { rare_event_size: 1.0 / probability, eighth_moment_ratio: 1.0 / probability };
     let channel = Channel::unbiased(value, moments, tails);
-    let distribution = Some(Distribution::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));
+    let distribution =
+        Some(Distribution::Atoms(vec![(0.0, 1.0 - probability), (1.0, probability)]));
     Prediction { distribution, ..Prediction::uncounted(channel) }
 }
 

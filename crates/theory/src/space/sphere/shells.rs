@@ -34,19 +34,21 @@ pub struct BallResolution {
     /// Number of halvings of shells towards a black sphere.
     pub core: u32,
     /// Relative error at which two answers may agree by accident: several times a measured one.
-    pub chance: f64,
+    pub probability: f64,
 }
 
 impl BallResolution {
     /// Resolution of reference values: about twelve digits.
-    pub const FINE: Self = Self { nodes: 12, directions: 12, surface: 15, core: 23, chance: 2e-13 };
+    pub const FINE: Self =
+        Self { nodes: 12, directions: 12, surface: 15, core: 23, probability: 2e-13 };
     /// Resolution for comparison with draws: about seven digits.
-    pub const COARSE: Self = Self { nodes: 7, directions: 7, surface: 8, core: 11, chance: 1e-8 };
+    pub const COARSE: Self =
+        Self { nodes: 7, directions: 7, surface: 8, core: 11, probability: 1e-8 };
 
     /// Answer with the error from two other resolutions.
     pub(super) fn known(self, [fine, coarse, other]: [f64; 3]) -> Known {
         let difference = (fine - coarse).abs().max(SAFETY * (fine - other).abs());
-        Known::estimated(fine, difference + self.chance * fine.abs())
+        Known::estimated(fine, difference + self.probability * fine.abs())
     }
 
     /// Resolution around the centre: shells as wide as a small black sphere resolve `1/r²` badly, with similar
@@ -54,7 +56,7 @@ impl BallResolution {
     pub(super) fn about(self, centre: Centre, radius: f64) -> Self {
         match centre {
             Centre::Black(core) => {
-                Self { chance: self.chance * (2.0 * radius / core).powi(2), ..self }
+                Self { probability: self.probability * (2.0 * radius / core).powi(2), ..self }
             }
             Centre::Medium => self,
         }
@@ -72,7 +74,7 @@ impl BallResolution {
             directions: self.directions - nodes as usize,
             surface: self.surface - surface,
             core: self.core - core,
-            chance: self.chance,
+            probability: self.probability,
         }
     }
 }
@@ -152,7 +154,7 @@ impl Shells {
         }
         let last = outer - half * halved(resolution.surface);
         parts.push((last, outer, nodes(resolution.surface, 0.66)));
-        let mut found = Self { shells: Vec::new(), count: 0 };
+        let mut result = Self { shells: Vec::new(), count: 0 };
         for (from, to, nodes) in parts {
             let width = to.sqrt() - from.sqrt();
             let thickest = (0..=8)
@@ -165,12 +167,12 @@ impl Shells {
                 // Equal steps in r, of about equal optical depth.
                 let r = from.sqrt() + width * piece as f64 / pieces;
                 let above = if piece as f64 >= pieces { to } else { r * r };
-                found.shells.push(Shell { from: below, to: above, nodes, first: found.count });
-                found.count += nodes;
+                result.shells.push(Shell { from: below, to: above, nodes, first: result.count });
+                result.count += nodes;
                 below = above;
             }
         }
-        found
+        result
     }
 
     /// The values of `r²` at all nodes.
@@ -188,9 +190,9 @@ impl Shells {
 pub struct GaussRules(Vec<GaussLegendre>);
 
 impl GaussRules {
-    /// Rules of 1 to `most` nodes.
-    pub fn new(most: usize) -> Self {
-        Self((1..=most.max(1)).map(GaussLegendre::new).collect())
+    /// Rules of 1 to `maximum` nodes.
+    pub fn new(maximum: usize) -> Self {
+        Self((1..=maximum.max(1)).map(GaussLegendre::new).collect())
     }
 
     /// The rule of a number of nodes, clamped to those that exist.

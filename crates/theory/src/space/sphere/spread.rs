@@ -175,7 +175,7 @@ mod tests {
     fn the_worst_split_is_found() {
         let at = VertexBound { share: 0.4, largest: 0.5, direct: 0.3, all: 0.9 };
         for heuristic in [Balance, Power] {
-            let found = connected(heuristic, &at);
+            let result = connected(heuristic, &at);
             let (shadow, connection) = (0.4 / (1.0 + heuristic.raised(0.4)), most(heuristic, 0.5));
             let mut largest = 0.0f64;
             for i in 0..=300 {
@@ -185,7 +185,10 @@ mod tests {
                     largest = largest.max(shadow * 0.3 + connection * c + later);
                 }
             }
-            assert!((found - largest).abs() < 1e-4 && found > largest - 1e-12, "{found} {largest}");
+            assert!(
+                (result - largest).abs() < 1e-4 && result > largest - 1e-12,
+                "{result} {largest}"
+            );
         }
     }
 

@@ -69,17 +69,17 @@ fn spread(line: &Line, techniques: Techniques) -> Option<f64> {
     let root = |importance: &Importance| importance.entering.max(0.0).sqrt();
     let mut before = real.solve(&last, [0.0; 2]);
     let mut here = earlier(&before);
-    let (mut sum, mut most) = (0.0, 0.0f64);
+    let (mut sum, mut maximum) = (0.0, 0.0f64);
     for _ in 0..MAX_VERTICES {
         let own = root(&before);
         sum += own;
-        most = most.max(own);
+        maximum = maximum.max(own);
         let next = earlier(&here);
         let share = largest_share(line, &next, &before).sqrt();
         let two = root(&here) + root(&next);
         let rest = if share > 0.0 { two / (1.0 - share) } else { two };
         if share < 1.0 && rest <= ENOUGH * sum {
-            return Some(sum + rest + 0.5 * most);
+            return Some(sum + rest + 0.5 * maximum);
         }
         (before, here) = (here, next);
     }

@@ -97,18 +97,18 @@ impl Forward {
         let nodes: Vec<_> = (0..self.rates[0].len())
             .map(|node| {
                 let shares = self.shares(node);
-                let chance = chances.of_events(shares.len(), |channel| shares[channel], &weights);
-                (shares, chance)
+                let choice = chances.of_events(shares.len(), |channel| shares[channel], &weights);
+                (shares, choice)
             })
             .collect();
         Some(self.moments(&|powers| {
             let total: i32 = powers.iter().sum();
             let loss = |node: usize| {
-                let (shares, chance) = &nodes[node];
+                let (shares, choice) = &nodes[node];
                 let brings = |event: usize| {
                     let channels = shares.iter().zip(powers);
                     let product: f64 = channels.map(|(s, &k)| s[event].powi(k)).product();
-                    if product == 0.0 { 0.0 } else { product / chance[event].powi(total - 1) }
+                    if product == 0.0 { 0.0 } else { product / choice[event].powi(total - 1) }
                 };
                 majorant * (brings(0) + brings(1) - 1.0)
             };
@@ -118,7 +118,7 @@ impl Forward {
 
     /// Moments of multiple importance sampling over heroes; `None` where the rod is not constant in each cell.
     pub fn balanced(&self) -> Option<Moments> {
-        let scale = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x));
+        let scale = self.majorants.iter().fold(0.0f64, |maximum, &x| maximum.max(x));
         let mut cells = Vec::new();
         for (panel, here) in self.mesh.numbered() {
             for event in [0, 1] {
@@ -145,7 +145,7 @@ impl Forward {
 
     /// Selects the required moments of `E[Π X_λ^{k_λ}]`.
     fn moments(&self, of: &dyn Fn(&[i32]) -> f64) -> Moments {
-        let collisions = self.majorants.iter().fold(0.0f64, |most, &x| most.max(x))
+        let collisions = self.majorants.iter().fold(0.0f64, |maximum, &x| maximum.max(x))
             * self.mesh.support().length();
         let relative = ROUNDING + self.mesh.relative_error() * collisions.max(1.0);
         let none = vec![0; self.heroes.len()];

@@ -100,7 +100,7 @@ impl<'a> RodSpectrum<'a> {
     /// Prediction for a draw. Without `with_distributions`, as for lines in plots, only variances and mean lookups are valid.
     pub fn predict(&self, with_distributions: bool) -> Prediction {
         let techniques = self.tracker.techniques();
-        let found: Option<Vec<WalkMoments>> = self
+        let result: Option<Vec<WalkMoments>> = self
             .media
             .iter()
             .zip(&self.problem.rods)
@@ -113,15 +113,15 @@ impl<'a> RodSpectrum<'a> {
             (LitTracker::Tracking(chances), Some(forward)) => forward.lookups(chances),
             _ => None,
         };
-        let of_heroes = |found: &Vec<WalkMoments>| {
-            let factorial = found.iter().map(|found| found.lookups);
+        let of_heroes = |result: &Vec<WalkMoments>| {
+            let factorial = result.iter().map(|result| result.lookups);
             let mixed = colours::mixed(self.heroes.iter().copied().zip(factorial));
             mixed.map(CountDistribution::of_factorial)
         };
-        let lookups = lookups.or_else(|| found.as_ref().and_then(of_heroes));
-        let shadow_lookups = found.as_ref().and_then(|found| {
-            let each = self.heroes.iter().zip(found);
-            each.map(|(weight, found)| Some(weight * found.shadow_lookups?)).sum()
+        let lookups = lookups.or_else(|| result.as_ref().and_then(of_heroes));
+        let shadow_lookups = result.as_ref().and_then(|result| {
+            let each = self.heroes.iter().zip(result);
+            each.map(|(weight, result)| Some(weight * result.shadow_lookups?)).sum()
         });
         let moments = match (self.tracker, &forward) {
             (LitTracker::Tracking(chances), forward) => {
@@ -133,7 +133,7 @@ impl<'a> RodSpectrum<'a> {
                     forward.filter(|_| is_hits)?.balanced()
                 })
             }
-            _ => found.map(|found| self.independent(&found)),
+            _ => result.map(|result| self.independent(&result)),
         };
         let answers = self.media.iter().zip(&self.problem.rods);
         let answers: Vec<Known> = answers.map(|((mesh, _), rod)| lit::answer(mesh, rod)).collect();
@@ -173,9 +173,9 @@ impl<'a> RodSpectrum<'a> {
     }
 
     /// Moments of one channel a draw; for a single channel, those of every tracker.
-    fn independent(&self, found: &[WalkMoments]) -> Moments {
-        let raw = self.heroes.iter().zip(found);
-        let raw = raw.map(|(&weight, found)| colours::independent(&found.raw, weight));
+    fn independent(&self, result: &[WalkMoments]) -> Moments {
+        let raw = self.heroes.iter().zip(result);
+        let raw = raw.map(|(&weight, result)| colours::independent(&result.raw, weight));
         Moments { raw: raw.collect(), mixed: vec![[0.0; 4]; self.channels() - 1] }
     }
 

@@ -119,8 +119,8 @@ impl<'a> Orders<'a> {
         });
         let mixed = channels.skip(1).map(|channel| {
             PAIRS.map(|powers| {
-                let found = of(Monomial { channels: [channel - 1, channel], powers }, 3);
-                found.map_or(f64::INFINITY, |known| known.value)
+                let result = of(Monomial { channels: [channel - 1, channel], powers }, 3);
+                result.map_or(f64::INFINITY, |known| known.value)
             })
         });
         Some(Moments { raw: raw.collect(), mixed: mixed.collect() })
@@ -255,11 +255,11 @@ impl OrderCounts {
 
 /// Powers of each channel, and mixed ones of each and the next, with the terms of their binomials.
 fn monomials(channels: usize, highest: usize) -> (Vec<Monomial>, Vec<Vec<Term>>) {
-    let mut found: Vec<Monomial> = (0..channels)
+    let mut result: Vec<Monomial> = (0..channels)
         .flat_map(|channel| (1..=highest).map(move |k| Monomial::of_one(channel, k)))
         .collect();
     for channel in 1..channels {
-        found.extend(PAIRS.map(|powers| Monomial { channels: [channel - 1, channel], powers }));
+        result.extend(PAIRS.map(|powers| Monomial { channels: [channel - 1, channel], powers }));
     }
     let place = |channels: [usize; 2], powers: [usize; 2]| {
         let monomial = match powers {
@@ -268,7 +268,7 @@ fn monomials(channels: usize, highest: usize) -> (Vec<Monomial>, Vec<Vec<Term>>)
             [k, 0] => Monomial::of_one(channels[0], k),
             _ => Monomial { channels, powers },
         };
-        found.iter().position(|known| *known == monomial)
+        result.iter().position(|known| *known == monomial)
     };
     let terms_of = |monomial: &Monomial| {
         let [p, q] = monomial.powers;
@@ -282,6 +282,6 @@ fn monomials(channels: usize, highest: usize) -> (Vec<Monomial>, Vec<Vec<Term>>)
         }
         terms
     };
-    let terms = found.iter().map(terms_of).collect();
-    (found, terms)
+    let terms = result.iter().map(terms_of).collect();
+    (result, terms)
 }

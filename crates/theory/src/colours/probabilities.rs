@@ -32,12 +32,12 @@ impl Chance {
                 sum / one.each(shares.len() as f64)
             }
             Self::Maximum => {
-                let (mut most, mut least) = (zero, one);
+                let (mut maximum, mut minimum) = (zero, one);
                 for &share in shares {
-                    most = most.or_more(share);
-                    least = least.or_less(share);
+                    maximum = maximum.or_more(share);
+                    minimum = minimum.or_less(share);
                 }
-                most / (most + (one - least))
+                maximum / (maximum + (one - minimum))
             }
         }
     }
