@@ -42,6 +42,7 @@ mod records;
 mod render;
 mod render_files;
 mod rod;
+mod rooms;
 mod shorthands;
 mod single_precision;
 mod single_scattering;

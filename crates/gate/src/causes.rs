@@ -73,7 +73,7 @@ impl SweepPart {
     }
 }
 
-/// What the failure of a check shows: its contribution to a [`Pattern`].
+/// Symptom of the failure of a check: its contribution to a [`Pattern`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Symptom {
     /// The mean is off.

@@ -29,7 +29,7 @@ macro_rules! ids {
                 }
             }
 
-            /// What a failure of the check shows.
+            /// Returns the symptom that a failure of the check is.
             pub fn symptom(self) -> Symptom {
                 match self {
                     $(Self::$Id => Symptom::$symptom,)*

@@ -126,7 +126,7 @@ impl Dependence {
     }
 }
 
-/// Serializes a dependence of neighbours, which has no lag.
+/// Serializes the dependence of neighbours without its lag.
 fn without_lag<S: Serializer>(of: &Dependence, to: S) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]
     struct OfNeighbours<'a> {

@@ -129,7 +129,7 @@ impl Wrong<'_> {
         walks::draw(&altered, &setup.fields.sampling, medium, random)
     }
 
-    /// The optical depth whose random number is the one that chose a point.
+    /// The optical depth by the random number that chose a point.
     fn depth_of_point<L: Lane>(&self, s: L) -> L {
         let (problem, angles) = (&*self.setup.problem, self.setup.problem.angles());
         let number = s.map(|s| {
