@@ -225,8 +225,8 @@ mod tests {
             stored(&[("a", [19.0, 20.0, 21.0]), ("b", [4.0, 5.0, 6.0]), ("new", [1.0; 3])]);
         let result = compare("main", &before, &later, 0.25);
         assert!(result.fails());
-        let told: Vec<_> = result.changes.iter().map(|c| (c.ratio, c.is_regression)).collect();
-        assert_eq!(told, [(2.0, true), (0.5, false)]);
+        let ratios: Vec<_> = result.changes.iter().map(|c| (c.ratio, c.is_regression)).collect();
+        assert_eq!(ratios, [(2.0, true), (0.5, false)]);
         assert_eq!((result.added, result.missing), (vec![id("new")], vec![id("old")]));
         "another".clone_into(&mut later.timed[0].case);
         let result = compare("main", &before, &later, 0.25);

@@ -187,13 +187,13 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         }
     }
     arguments.show(&judged, console)?;
-    let told: Vec<JUnitCase> = judged
+    let tests: Vec<JUnitCase> = judged
         .iter()
         .map(|finding| JUnitCase::of_draws(&finding.name(), &finding.judgement))
         .collect();
     let unread: Vec<(String, String)> =
         errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
-    arguments.write_junit(&told, &unread)?;
+    arguments.write_junit(&tests, &unread)?;
     for (_, error) in &errors {
         output::complain(error);
     }
@@ -243,10 +243,10 @@ impl Arguments {
         files::writable(path).with_context(wrong)
     }
 
-    fn write_junit(&self, told: &[JUnitCase], unread: &[(String, String)]) -> anyhow::Result<()> {
+    fn write_junit(&self, tests: &[JUnitCase], unread: &[(String, String)]) -> anyhow::Result<()> {
         let Some(path) = &self.junit else { return Ok(()) };
         let inconclusive = Inconclusive::in_junit(self.inconclusive);
-        let text = report::junit::text(told, unread, self.alpha, inconclusive);
+        let text = report::junit::text(tests, unread, self.alpha, inconclusive);
         files::replace(path, text.as_bytes())
             .with_context(|| format!("cannot write {} (--junit)", path.display()))
     }

@@ -306,20 +306,20 @@ pub fn judge(
     errors.extend(baselines.complaint(&record));
     // A run that will be resumed is no baseline yet.
     let store = || baselines.store(&record, run.as_ref());
-    let mut told = if was_stopped { String::new() } else { errors.keep(store()) };
+    let mut reason = if was_stopped { String::new() } else { errors.keep(store()) };
     if let (Some(out), Some(files)) = (&out, files) {
         if reused > 0 {
-            told = format!(
+            reason = format!(
                 "{reused} of {ready} experiments have not changed since the last run there: their \
-                 draws were reused (--fresh makes them anew)\n{told}"
+                 draws were reused (--fresh makes them anew)\n{reason}"
             );
         }
-        told = format!("{files} files in {}\n{told}", out.display());
+        reason = format!("{files} files in {}\n{reason}", out.display());
     }
     if reports.is_table() && !console.quiet {
         let meaning = screen::meaning(&record, output::pen(console));
         let page = out.as_ref().filter(|_| files.is_some()).map(|out| output::report_in(out));
-        errors.keep(output::print(&format!("{told}{meaning}{}", page.unwrap_or_default())));
+        errors.keep(output::print(&format!("{reason}{meaning}{}", page.unwrap_or_default())));
     }
     reports.annotate(&record, &mut errors);
     let code = close(&record, reports.inconclusive, &errors);

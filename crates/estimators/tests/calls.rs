@@ -58,7 +58,7 @@ const INEXACT: &[&str] = &[
 struct Calls {
     /// True while the visited functions run in a draw.
     drawing: bool,
-    actual: Vec<String>,
+    result: Vec<String>,
 }
 
 impl Calls {
@@ -88,7 +88,7 @@ impl Visit<'_> for Calls {
     fn visit_expr_method_call(&mut self, call: &syn::ExprMethodCall) {
         let name = call.method.to_string();
         if self.drawing && INEXACT.contains(&name.as_str()) {
-            self.actual.push(format!(".{name}()"));
+            self.result.push(format!(".{name}()"));
         }
         visit::visit_expr_method_call(self, call);
     }
@@ -98,7 +98,7 @@ impl Visit<'_> for Calls {
         let foreign = matches!(names.first().map(String::as_str), Some("libm" | "f64" | "f32"));
         let inexact = names.last().is_some_and(|name| INEXACT.contains(&name.as_str()));
         if self.drawing && foreign && inexact {
-            self.actual.push(names.join("::"));
+            self.result.push(names.join("::"));
         }
         visit::visit_path(self, path);
     }
@@ -108,7 +108,7 @@ fn calls(file: &File, drawing: bool) -> Vec<String> {
     let syntax = syn::parse_file(&file.text).unwrap_or_else(|e| panic!("{}: {e}", file.name()));
     let mut calls = Calls { drawing, ..Calls::default() };
     calls.visit_file(&syntax);
-    calls.actual
+    calls.result
 }
 
 #[test]
@@ -126,12 +126,12 @@ fn what_is_drawn_never_calls_the_platforms_functions() {
         let drawing =
             file.is_in("media/src/phase") || whole.iter().any(|path| file.path.ends_with(path));
         if drawing || file.is_in("estimators/src") || file.is_in("lab/src/mutants") {
-            let actual = calls(&file, drawing);
-            wrong.extend(actual.iter().map(|call| format!("{}: {call}", file.name())));
+            let result = calls(&file, drawing);
+            wrong.extend(result.iter().map(|call| format!("{}: {call}", file.name())));
         }
         if file.path.ends_with("media/src/piecewise.rs") {
-            let actual = calls(&file, false);
-            wrong.extend(actual.iter().map(|call| format!("{}: {call}", file.name())));
+            let result = calls(&file, false);
+            wrong.extend(result.iter().map(|call| format!("{}: {call}", file.name())));
         }
     }
     assert!(wrong.is_empty(), "use numeric::elementary instead:\n{}", wrong.join("\n"));

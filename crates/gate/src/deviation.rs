@@ -130,20 +130,20 @@ mod tests {
 
     #[test]
     fn every_message_has_percent_values_z_and_draws() {
-        let told = |measured, expected, z| {
+        let written = |measured, expected, z| {
             Deviation::new(measured, expected, 4_000_000).with_z(z).to_string()
         };
         // 0.0059/0.00503 − 1 = 17.3 %.
         let usual = "+17 % (measured 0.00590, expected 0.00503), z = +23.8 over 4e6 draws";
-        assert_eq!(told(0.0059, 0.005_03, 23.8), usual);
+        assert_eq!(written(0.0059, 0.005_03, 23.8), usual);
         let small = "-0.01 % (measured 0.999900, expected 1.00000), z = -5.12 over 4e6 draws";
-        assert_eq!(told(0.9999, 1.0, -5.12), small);
+        assert_eq!(written(0.9999, 1.0, -5.12), small);
         let large = "+133 % (measured 2.33, expected 1.00), z = +1.2e5 over 4e6 draws";
-        assert_eq!(told(2.33, 1.0, 123_456.0), large);
+        assert_eq!(written(2.33, 1.0, 123_456.0), large);
         let huge = "+1.2e5 % (measured 1200, expected 1.00), z = +99.0 over 4e6 draws";
-        assert_eq!(told(1200.0, 1.0, 99.0), huge.replace("1200,", "1.20e3,"));
+        assert_eq!(written(1200.0, 1.0, 99.0), huge.replace("1200,", "1.20e3,"));
         let negative = "-50 % (measured -3.00, expected -2.00), z = -4.00 over 4e6 draws";
-        assert_eq!(told(-3.0, -2.0, -4.0), negative);
+        assert_eq!(written(-3.0, -2.0, -4.0), negative);
     }
 
     #[test]

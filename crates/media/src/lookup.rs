@@ -40,10 +40,10 @@ struct Within<'a, F>(&'a F, Option<Bounds>);
 impl<F: Field> Formula<3> for Within<'_, F> {
     #[inline(always)]
     fn at<L: Lane>(&self, p: [L; 3]) -> L {
-        let actual = self.0.value(p);
+        let values = self.0.value(p);
         match &self.1 {
-            Some(bounds) => Lane::select(bounds.contains(p), actual, actual.each(0.0)),
-            None => actual,
+            Some(bounds) => Lane::select(bounds.contains(p), values, values.each(0.0)),
+            None => values,
         }
     }
 }
@@ -84,9 +84,9 @@ impl<const N: usize, F: Formula<N>, S: Hardware> FieldLookups<N> for Compiled<F,
                 for (axis, row) in places.iter().enumerate() {
                     Pair(first[axis], second[axis]) = Pair::from_row(self.simd, row);
                 }
-                let mut actual = [0.0; PAIR_WIDTH];
-                Pair(self.formula.at(first), self.formula.at(second)).store(&mut actual);
-                actual
+                let mut values = [0.0; PAIR_WIDTH];
+                Pair(self.formula.at(first), self.formula.at(second)).store(&mut values);
+                values
             },
         )
     }
@@ -99,9 +99,9 @@ impl<const N: usize, F: Formula<N>, S: Hardware> FieldLookups<N> for Compiled<F,
                 for (axis, row) in places.iter().enumerate() {
                     lanes[axis] = self.simd.load(row);
                 }
-                let mut actual = [0.0; WIDTH];
-                self.formula.at(lanes).store(&mut actual);
-                actual
+                let mut values = [0.0; WIDTH];
+                self.formula.at(lanes).store(&mut values);
+                values
             },
         )
     }
@@ -111,37 +111,37 @@ impl<const N: usize, F: Formula<N>, S: Hardware> FieldLookups<N> for Compiled<F,
 struct OneByOne<F>(F);
 
 impl<F> OneByOne<F> {
-    fn each<const N: usize>(&self, rows: [&[f64]; N], actual: &mut [f64])
+    fn each<const N: usize>(&self, rows: [&[f64]; N], values: &mut [f64])
     where
         F: Formula<N>,
     {
         let mut place = [0.0; N];
-        for (lane, actual) in actual.iter_mut().enumerate() {
+        for (lane, values) in values.iter_mut().enumerate() {
             for axis in 0..N {
                 place[axis] = rows[axis][lane];
             }
-            *actual = self.0.at(place);
+            *values = self.0.at(place);
         }
     }
 }
 
 impl<const N: usize, F: Formula<N>> FieldLookups<N> for OneByOne<F> {
     fn one(&self, place: [f64; N]) -> f64 {
-        let mut actual = [0.0];
-        self.each(place.each_ref().map(std::slice::from_ref), &mut actual);
-        actual[0]
+        let mut values = [0.0];
+        self.each(place.each_ref().map(std::slice::from_ref), &mut values);
+        values[0]
     }
 
     fn pair(&self, places: &[[f64; PAIR_WIDTH]; N]) -> [f64; PAIR_WIDTH] {
-        let mut actual = [0.0; PAIR_WIDTH];
-        self.each(places.each_ref().map(<[f64; PAIR_WIDTH]>::as_slice), &mut actual);
-        actual
+        let mut values = [0.0; PAIR_WIDTH];
+        self.each(places.each_ref().map(<[f64; PAIR_WIDTH]>::as_slice), &mut values);
+        values
     }
 
     fn pack(&self, places: &[[f64; WIDTH]; N]) -> [f64; WIDTH] {
-        let mut actual = [0.0; WIDTH];
-        self.each(places.each_ref().map(<[f64; WIDTH]>::as_slice), &mut actual);
-        actual
+        let mut values = [0.0; WIDTH];
+        self.each(places.each_ref().map(<[f64; WIDTH]>::as_slice), &mut values);
+        values
     }
 }
 
@@ -205,9 +205,9 @@ impl<F: DepthFormula, S: Hardware> Depths for Compiled<&F, S> {
                 }
                 let [a, b, c, x, y, z, from, to] = lanes;
                 let depths = self.formula.depth([[a, b, c], [x, y, z]], [from, to]);
-                let mut actual = [0.0; WIDTH];
-                depths.store(&mut actual);
-                actual
+                let mut values = [0.0; WIDTH];
+                depths.store(&mut values);
+                values
             },
         )
     }

@@ -103,8 +103,9 @@ impl Workers for Team {
             match message {
                 Message::Planned(Ok((other, of_rank))) => {
                     threads[rank] = of_rank;
-                    let told = |why| (rank, format!("rank {rank}: would not draw the same: {why}"));
-                    faults.extend(other.mismatch(header).map(told));
+                    let refusal =
+                        |why| (rank, format!("rank {rank}: would not draw the same: {why}"));
+                    faults.extend(other.mismatch(header).map(refusal));
                 }
                 Message::Planned(Err(why)) => {
                     faults.insert(rank, format!("rank {rank}: {why}"));

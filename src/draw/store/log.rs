@@ -115,7 +115,7 @@ impl Log {
         };
         write().map_err(|error| {
             let _ = fs::remove_file(&new);
-            told("write", path)(error)
+            failed_to("write", path)(error)
         })
     }
 
@@ -124,16 +124,16 @@ impl Log {
         // A run that was killed while it rewrote the file left it; the lock excludes other processes.
         let _ = fs::remove_file(beside(path));
         let file = OpenOptions::new().read(true).write(true).open(path);
-        let log = Self { lock, ..Self::scan(path, file.map_err(told("open", path))?)? };
+        let log = Self { lock, ..Self::scan(path, file.map_err(failed_to("open", path))?)? };
         let inside = log.inside();
-        inside.file.set_len(inside.end).map_err(told("write", path))?;
+        inside.file.set_len(inside.end).map_err(failed_to("write", path))?;
         drop(inside);
         Ok(log)
     }
 
     /// Opens a log to read it.
     pub fn open(path: &Path) -> io::Result<Self> {
-        Self::scan(path, File::open(path).map_err(told("open", path))?)
+        Self::scan(path, File::open(path).map_err(failed_to("open", path))?)
     }
 
     /// Reads all frames once, and remembers the places of entries.
@@ -162,7 +162,7 @@ impl Log {
             }
             Ok((end, (end < length).then_some(end)))
         };
-        let (end, damaged_at) = scan().map_err(told("read", path))?;
+        let (end, damaged_at) = scan().map_err(failed_to("read", path))?;
         if places.is_empty() {
             let wrong = "is no file of blocks of this version, or its header is damaged";
             return Err(io::Error::other(format!("{} {wrong}", path.display())));
@@ -191,14 +191,14 @@ impl Log {
     pub fn get<T: DeserializeOwned>(&self, key: Key) -> io::Result<Option<T>> {
         let Some(content) = self.inside().read(&self.path, key)? else { return Ok(None) };
         let decoded = postcard::from_bytes::<(Key, T)>(&content).map_err(io::Error::other);
-        Ok(Some(decoded.map_err(told("read", &self.path))?.1))
+        Ok(Some(decoded.map_err(failed_to("read", &self.path))?.1))
     }
 
     /// Appends an entry.
     pub fn put(&self, key: Key, value: &impl Serialize) -> io::Result<()> {
         let mut inside = self.inside();
         let written = entry(key, value).and_then(|content| inside.write(key, &content));
-        written.map_err(told("write", &self.path))
+        written.map_err(failed_to("write", &self.path))
     }
 
     /// Returns whether the file is longer than `min`, and than `ratio` times what it was when it was last rewritten.
@@ -227,7 +227,7 @@ impl Log {
 
     /// Waits until the disk has all entries.
     pub fn synchronise(&self) -> io::Result<()> {
-        self.inside().synchronise().map_err(told("write", &self.path))
+        self.inside().synchronise().map_err(failed_to("write", &self.path))
     }
 
     fn inside(&self) -> MutexGuard<'_, Inside> {
@@ -244,7 +244,7 @@ impl Inside {
             let left = self.file.metadata()?.len().saturating_sub(at);
             read_frame(&mut self.file, left)
         };
-        let content = read().map_err(told("read", path))?;
+        let content = read().map_err(failed_to("read", path))?;
         let changed = || format!("{} has changed at byte {at} since it was opened", path.display());
         content.map(Some).ok_or_else(|| io::Error::other(changed()))
     }
@@ -267,7 +267,7 @@ impl Inside {
 }
 
 /// Adds the path and the operation to an error.
-fn told(doing: &str, path: &Path) -> impl Fn(io::Error) -> io::Error {
+fn failed_to(doing: &str, path: &Path) -> impl Fn(io::Error) -> io::Error {
     let what = format!("cannot {doing} {}", path.display());
     move |error| io::Error::new(error.kind(), format!("{what}: {error}"))
 }

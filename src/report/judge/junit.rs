@@ -58,7 +58,7 @@ impl JUnitCase {
 /// Returns the verdicts, at the level `alpha` together; `unread` are files that could not be read, each with the
 /// reason.
 pub fn text(
-    told: &[JUnitCase],
+    cases: &[JUnitCase],
     unread: &[(String, String)],
     alpha: f64,
     inconclusive: Inconclusive,
@@ -77,19 +77,19 @@ pub fn text(
     let suite = Suite {
         name: "judge".to_owned(),
         properties: vec![("alpha", number(alpha))],
-        tests: told.iter().map(|told| test(told, inconclusive)).chain(unread).collect(),
+        tests: cases.iter().map(|case| test(case, inconclusive)).chain(unread).collect(),
         ..Suite::default()
     };
     junit::text(&[suite], None)
 }
 
-fn test(told: &JUnitCase, inconclusive: Inconclusive) -> Test {
-    let is_remarkable = told.verdict == Verdict::Pass && !told.reason.is_empty();
+fn test(case: &JUnitCase, inconclusive: Inconclusive) -> Test {
+    let is_remarkable = case.verdict == Verdict::Pass && !case.reason.is_empty();
     Test {
-        name: told.name.clone(),
+        name: case.name.clone(),
         class: Some("judge".to_owned()),
         time: None,
-        trouble: trouble_of(told.verdict, &told.reason, inconclusive, || told.lines.join("\n")),
-        output: is_remarkable.then(|| format!("pass: {}", told.reason)),
+        trouble: trouble_of(case.verdict, &case.reason, inconclusive, || case.lines.join("\n")),
+        output: is_remarkable.then(|| format!("pass: {}", case.reason)),
     }
 }

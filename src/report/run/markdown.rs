@@ -57,10 +57,10 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
         let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
     }
     more(text, failures.len());
-    let mut told: Vec<Vec<String>> = Vec::new();
+    let mut written: Vec<Vec<String>> = Vec::new();
     for failure in failures.iter().take(MAX_LINES) {
         let lines = failures::causes(&failure.row);
-        if lines.is_empty() || told.contains(&lines) {
+        if lines.is_empty() || written.contains(&lines) {
             continue;
         }
         let first =
@@ -70,7 +70,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
             let item = line.strip_prefix("- ").unwrap_or(line);
             let _ = writeln!(text, "- {}", escaped(item));
         }
-        told.push(lines);
+        written.push(lines);
     }
     let mut commands: Vec<(&str, &str)> = Vec::new();
     for failure in failures.iter().take(MAX_LINES) {

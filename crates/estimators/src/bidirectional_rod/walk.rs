@@ -199,8 +199,8 @@ fn join<L: Lane, C: BothWays<L>>(
         attenuate(problem, method, (&mut tracker.path, &tracker.field), valid);
     }
     if !is_hit {
-        let actual = tracker.path.transmittance[s - 1];
-        valid &= actual.each(0.0).below(actual);
+        let result = tracker.path.transmittance[s - 1];
+        valid &= result.each(0.0).below(result);
     }
     valid
 }
@@ -274,14 +274,14 @@ fn attenuate<L: Lane>(
 /// Minus the optical depths between distances, of the lanes in `which`; 0 in the others.
 #[inline(always)]
 fn minus_depths<L: Lane>(problem: &BidirectionalRod, [a, b]: [L; 2], which: L::Mask) -> L {
-    let (mut from, mut to, mut actual) = ([0.0; PAIR_WIDTH], [0.0; PAIR_WIDTH], [0.0; PAIR_WIDTH]);
+    let (mut from, mut to, mut result) = ([0.0; PAIR_WIDTH], [0.0; PAIR_WIDTH], [0.0; PAIR_WIDTH]);
     a.or_less(b).store(&mut from);
     a.or_more(b).store(&mut to);
     let mut bits = which.bits();
     while bits != 0 {
         let lane = bits.trailing_zeros() as usize % PAIR_WIDTH;
         bits &= bits - 1;
-        actual[lane] = -problem.medium().optical_depth(Span::new(from[lane], to[lane])).value;
+        result[lane] = -problem.medium().optical_depth(Span::new(from[lane], to[lane])).value;
     }
-    a.load(&actual)
+    a.load(&result)
 }

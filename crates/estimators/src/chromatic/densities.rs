@@ -70,9 +70,9 @@ impl<L: Lane> Densities<L> {
 
     /// Stores `σ_t/σ̂` of all channels; returns the heroes' own ratios.
     #[inline(always)]
-    pub fn look<S: WalkEvents>(&mut self, among: &Scatterers<'_, S>, hero: L, actual: &[L]) -> L {
+    pub fn look<S: WalkEvents>(&mut self, among: &Scatterers<'_, S>, hero: L, values: &[L]) -> L {
         let (media, mut own) = (&among.media, hero);
-        for (channel, &extinction) in actual.iter().enumerate() {
+        for (channel, &extinction) in values.iter().enumerate() {
             let mut majorant = hero.each(media.majorants[channel]);
             if among.steps.has_heros_majorant() {
                 majorant = number_of_hero(hero, &media.majorants[..media.count]);

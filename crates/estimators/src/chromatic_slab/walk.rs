@@ -218,27 +218,27 @@ impl<S: WalkEvents> Walk for InSlab<'_, S> {
     fn score<L: Lane>(&self, numbers: &[L], left: L::Mask, lookups: L, values: &mut [L]) -> L {
         let (media, zero) = (&self.among.media, lookups.each(0.0));
         let [hero, cosine, mut length, last] = [numbers[0], numbers[1], numbers[2], numbers[3]];
-        let (mut actual, mut defect) = ([zero; MAX_CHANNELS], zero);
-        let actual = &mut actual[..media.count];
+        let (mut result, mut defect) = ([zero; MAX_CHANNELS], zero);
+        let result = &mut result[..media.count];
         if self.scores_all {
-            for (channel, actual) in actual.iter_mut().enumerate() {
-                *actual = numbers[4 + channel];
+            for (channel, result) in result.iter_mut().enumerate() {
+                *result = numbers[4 + channel];
             }
             if self.weighing.last_piece != LastPiece::Everywhere {
                 length = length - last;
             }
-            media.common(hero, [length, lookups], actual);
+            media.common(hero, [length, lookups], result);
             if matches!(self.among.walker, Walker::Mis(_)) {
-                let off = media.balance(self.weighing.missing, actual);
+                let off = media.balance(self.weighing.missing, result);
                 defect = L::select(left, off, zero);
             }
         } else {
-            media.alone(hero, actual);
+            media.alone(hero, result);
         }
         let is_down = zero.below(cosine);
         for (number, &(end, channel)) in self.setup.problem.colours.seen.iter().enumerate() {
             let there = if end == End::Transmitted { is_down } else { !is_down };
-            values[number] = L::select(left & there, actual[channel], zero).sealed();
+            values[number] = L::select(left & there, result[channel], zero).sealed();
         }
         defect
     }

@@ -87,8 +87,8 @@ impl Vertices {
         let scene = &scene(setup, self.camera, shadow);
         let (collisions, heuristic) = (absorption.collisions(setup), self.heuristic);
         let [first, second] = Mis { scene, collisions, heuristic, nulls }.points();
-        let actual = if self.is_one { first.either(&second) } else { first.plus(&second) };
-        actual.prediction()
+        let result = if self.is_one { first.either(&second) } else { first.plus(&second) };
+        result.prediction()
     }
 
     /// The moments of points from the light, from the main part, or from both.

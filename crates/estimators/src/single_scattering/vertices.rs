@@ -357,13 +357,13 @@ impl<const CHOSEN: bool, const COLLIDES: bool> Walk for ToVertices<'_, CHOSEN, C
         } else {
             [none; 2]
         };
-        let mut actual = none;
+        let mut result = none;
         if CHOSEN && looked.any() {
             let extinction = extinctions.extinction;
             let scatters = looked & extinction.each(0.0).below(extinction);
             path.extinction.set_where(looked, extinction);
             path.looks = none;
-            actual = looked & !scatters;
+            result = looked & !scatters;
             if self.is_tracked() {
                 path.sets_out |= scatters;
             } else {
@@ -375,14 +375,14 @@ impl<const CHOSEN: bool, const COLLIDES: bool> Walk for ToVertices<'_, CHOSEN, C
             path.to_light.collide(&self.ground, extinctions, at, Self::SCORES, random);
         if lit.any() {
             self.score(path, lit, light);
-            actual |= lit;
+            result |= lit;
         }
         if CHOSEN && COLLIDES && !self.plan.is_one {
-            let first = actual & path.is_chosen;
+            let first = result & path.is_chosen;
             Self::seek(path, first);
-            actual &= !first;
+            result &= !first;
         }
-        ends |= actual;
+        ends |= result;
         path.done |= ends;
         if !path.done.are_enough(Self::BEGIN) {
             return !none;

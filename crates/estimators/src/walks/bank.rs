@@ -362,22 +362,22 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
             pack.fly(walk, &mut state, &mut first),
             other.fly(walk, &mut other_state, &mut second),
         );
-        let mut actual = Pair(none[0], none[0]);
+        let mut result = Pair(none[0], none[0]);
         if W::ON_RAY && W::IS_CHROMATIC {
             for channel in 0..media {
                 let Pair(here, there) = look_up(channel, t);
                 (channels[channel], other_channels[channel]) = (here, there);
             }
         } else if W::ON_RAY {
-            actual = look_up(0, t);
+            result = look_up(0, t);
         }
         if W::IN_SPACE {
             look_up_in_space(simd, walk, [&state, &other_state], &mut in_space);
         }
         let others = [&channels[..media], &in_space[0][..there]];
-        let ended = pack.collide(walk, &mut state, actual.0, others, &mut first);
+        let ended = pack.collide(walk, &mut state, result.0, others, &mut first);
         let others = [&other_channels[..media], &in_space[1][..there]];
-        let other_ended = other.collide(walk, &mut other_state, actual.1, others, &mut second);
+        let other_ended = other.collide(walk, &mut other_state, result.1, others, &mut second);
         if W::SCORES == Scores::Often {
             pack.score(walk, &state, 0, &mut rows);
             other.score(walk, &other_state, 1, &mut rows);
@@ -408,7 +408,7 @@ fn look_up_in_space<S: Hardware, W: Walk>(
     simd: S,
     walk: &W,
     [here, there]: [&W::State<S::Pack>; 2],
-    [actual, other]: &mut [[S::Pack; MAX_CHANNELS]; 2],
+    [result, other]: &mut [[S::Pack; MAX_CHANNELS]; 2],
 ) {
     let ((inside, place), (other_inside, other_place)) =
         (walk.in_space(here), walk.in_space(there));
@@ -422,13 +422,13 @@ fn look_up_in_space<S: Hardware, W: Walk>(
     let fields = walk.fields();
     if W::IS_CHROMATIC {
         for (number, field) in fields.iter().enumerate() {
-            Pair(actual[number], other[number]) = field.pair(simd, &places);
+            Pair(result[number], other[number]) = field.pair(simd, &places);
         }
         return;
     }
     // No index: the loop keeps one pack in registers.
-    Pair(actual[0], other[0]) = fields[0].pair(simd, &places);
+    Pair(result[0], other[0]) = fields[0].pair(simd, &places);
     if let Some(second) = fields.get(1) {
-        Pair(actual[1], other[1]) = second.pair(simd, &places);
+        Pair(result[1], other[1]) = second.pair(simd, &places);
     }
 }

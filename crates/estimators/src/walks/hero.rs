@@ -117,26 +117,26 @@ impl Media {
     /// Turns densities into scores by the balance heuristic over all heroes but the last `missing`. Returns the
     /// deviation from 1 of their mean over heroes.
     #[inline(always)]
-    pub fn balance<L: Lane>(&self, missing: usize, actual: &mut [L]) -> L {
-        let zero = actual[0].each(0.0);
+    pub fn balance<L: Lane>(&self, missing: usize, values: &mut [L]) -> L {
+        let zero = values[0].each(0.0);
         let (mut density, mut sum) = (zero, zero);
-        for (channel, &actual) in actual[..self.count - missing].iter().enumerate() {
-            density = density + actual * self.probabilities[channel];
+        for (channel, &values) in values[..self.count - missing].iter().enumerate() {
+            density = density + values * self.probabilities[channel];
         }
         let scale = L::select(zero.below(density), zero.each(1.0) / density, zero);
-        for (channel, actual) in actual.iter_mut().enumerate() {
-            *actual = *actual * scale;
-            sum = sum + *actual * self.probabilities[channel];
+        for (channel, values) in values.iter_mut().enumerate() {
+            *values = *values * scale;
+            sum = sum + *values * self.probabilities[channel];
         }
         (sum - 1.0).size()
     }
 
     /// Sets the scores of walks that score for their heroes alone.
     #[inline(always)]
-    pub fn alone<L: Lane>(&self, hero: L, actual: &mut [L]) {
-        for (channel, actual) in actual.iter_mut().enumerate() {
+    pub fn alone<L: Lane>(&self, hero: L, values: &mut [L]) {
+        for (channel, values) in values.iter_mut().enumerate() {
             let own = hero.each(1.0) / hero.each(self.probabilities[channel]);
-            *actual = L::select(hero.equals(channel as f64), own, hero.each(0.0));
+            *values = L::select(hero.equals(channel as f64), own, hero.each(0.0));
         }
     }
 }

@@ -101,8 +101,8 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
             lookups += 1;
             t = walk.distance(&state, &route);
             mean_free_path = walk.mean_free_path(&state, &route);
-            for (channel, actual) in extinctions.iter_mut().enumerate() {
-                *actual = on_ray(channel, t);
+            for (channel, result) in extinctions.iter_mut().enumerate() {
+                *result = on_ray(channel, t);
             }
         }
         if !inside && !W::PAUSES {
@@ -125,9 +125,9 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
             state = before;
         }
         if W::SCORES == Scores::Often && walk.scores(&state, !goes_on) {
-            let (actual, _) = score(walk, &state, true, zero);
-            for (sum, actual) in sums.iter_mut().zip(actual) {
-                *sum = *sum + actual;
+            let (result, _) = score(walk, &state, true, zero);
+            for (sum, result) in sums.iter_mut().zip(result) {
+                *sum = *sum + result;
             }
         }
         if !goes_on {
@@ -138,8 +138,8 @@ fn follow<L: ScalarLane, W: Walk, V: Channels>(
         Scores::AtOnce => scored(walk, &state, left, lookups),
         Scores::Later => {
             let lookups = counted(walk, &state, lookups);
-            let (actual, defect) = score(walk, &state, left, L::of(f64::from(lookups)));
-            let value = V::of(walk.channels(), |channel| actual[channel].double());
+            let (result, defect) = score(walk, &state, left, L::of(f64::from(lookups)));
+            let value = V::of(walk.channels(), |channel| result[channel].double());
             Draw { value, lookups, defect: defect.double() }
         }
         Scores::Often => {
@@ -196,12 +196,12 @@ pub fn look_up_in_space<L: ScalarLane, W: Walk>(
     walk: &W,
     state: &W::State<L>,
     look_up: &impl Fn(usize, [L; 3]) -> L,
-    actual: &mut [L],
+    result: &mut [L],
 ) -> u32 {
     let (inside, place) = walk.in_space(state);
     if inside {
-        for (number, actual) in actual.iter_mut().enumerate() {
-            *actual = look_up(number, place);
+        for (number, result) in result.iter_mut().enumerate() {
+            *result = look_up(number, place);
         }
     }
     u32::from(inside)

@@ -419,11 +419,11 @@ pub fn run<S: Hardware, W: Walk, C: BothWays<S::Pack>>(
             let numbers = window.numbers(step, &mut streams, W::DECIDES);
             let other_numbers = other_window.numbers(step, &mut other_streams, W::DECIDES);
             let t = Pair(pack.fly(&walk, &numbers), other.fly(&walk, &other_numbers));
-            let actual = look_up(t);
-            let bits = pack.collide(&walk, (t.0, actual.0), &numbers, &mut window.rows[step]);
+            let result = look_up(t);
+            let bits = pack.collide(&walk, (t.0, result.0), &numbers, &mut window.rows[step]);
             window.note(step, bits, W::DECIDES);
             let bits =
-                other.collide(&walk, (t.1, actual.1), &other_numbers, &mut other_window.rows[step]);
+                other.collide(&walk, (t.1, result.1), &other_numbers, &mut other_window.rows[step]);
             other_window.note(step, bits, W::DECIDES);
         }
         let (first, second) = ((0, pack.stores_defects), (1, other.stores_defects));

@@ -94,18 +94,18 @@ impl fmt::Display for Outcome {
         // With too many values to display, those that decide come first.
         let verdict = self.verdict();
         let all = || self.values.iter().enumerate();
-        let mut told: Vec<(usize, &Judgement)> = all().collect();
-        if told.len() > TOLD {
+        let mut judgements: Vec<(usize, &Judgement)> = all().collect();
+        if judgements.len() > TOLD {
             let is_it = |(_, value): &(usize, &Judgement)| value.verdict == verdict;
-            told = all().filter(is_it).chain(all().filter(|other| !is_it(other))).collect();
+            judgements = all().filter(is_it).chain(all().filter(|other| !is_it(other))).collect();
         }
-        for (index, value) in told.iter().take(TOLD) {
+        for (index, value) in judgements.iter().take(TOLD) {
             let name = if self.values.len() > 1 { self.value(*index) } else { self.name.clone() };
             for (word, text) in value.lines(&name) {
                 write!(f, "\n  {word:10}{text}")?;
             }
         }
-        match told.len().saturating_sub(TOLD) {
+        match judgements.len().saturating_sub(TOLD) {
             0 => Ok(()),
             rest => write!(f, "\n  and {rest} other values"),
         }

@@ -164,8 +164,10 @@ pub fn judge(
     };
     let tiles_alpha = share * main_share(2) * alpha;
     let (q_tiles, q_whole) = (q(&parts), q(&wholes));
-    judgement.estimate =
-        pixels.estimate.as_ref().map(|actual| actual.told(claim, size, tile, &parts, &q_tiles));
+    judgement.estimate = pixels
+        .estimate
+        .as_ref()
+        .map(|estimate| estimate.summary(claim, size, tile, &parts, &q_tiles));
     if is_whole {
         let q = q_whole.iter().copied().fold(0.0, f64::max);
         judgement.variance = variance_of(stack, &pixels, q, is_free, alpha);

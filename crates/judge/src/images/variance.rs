@@ -81,8 +81,8 @@ impl Estimated {
         Ok(Some((variance, Self { passes, is_unknown, negative, unknown, first, stack })))
     }
 
-    /// Returns the facts about it for a judgement.
-    pub(super) fn told(
+    /// Returns the summary of the estimate for a judgement.
+    pub(super) fn summary(
         &self,
         claim: &Claim,
         size: Size,

@@ -320,9 +320,9 @@ fn in_channel(judgement: &Judgement, tile: &Tile) -> String {
 }
 
 fn deviation(judgement: &Judgement, tile: &Tile) -> Deviation {
-    let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
+    let text = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
         .with_z(tile.z.unwrap_or(f64::NAN));
-    Deviation { unit: DrawUnit::Passes, ..told }
+    Deviation { unit: DrawUnit::Passes, ..text }
 }
 
 /// Returns an obvious deviation in words.
@@ -367,14 +367,14 @@ fn too_large(judgement: &Judgement, claim: &Claim) -> Option<String> {
 }
 
 fn off(judgement: &Judgement, tile: &Tile) -> String {
-    let told = deviation(judgement, tile);
+    let text = deviation(judgement, tile);
     let is_whole = (tile.height, tile.width) == (judgement.size.rows, judgement.size.columns);
     let channel = if is_whole { in_channel(judgement, tile) } else { String::new() };
     let p = match (&judgement.comparison, tile.p) {
         (Some(_), Some(p)) => format!("p = {}, ", short(p, 2)),
         _ => String::new(),
     };
-    format!("the mean{channel} is off by {told} ({p}ln E = {:.1})", tile.ln_e)
+    format!("the mean{channel} is off by {text} ({p}ln E = {:.1})", tile.ln_e)
 }
 
 /// Returns the fault of a value in words.

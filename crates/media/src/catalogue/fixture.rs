@@ -31,6 +31,6 @@ pub fn read<T, const N: usize>(
     read: impl FnOnce(&Settings) -> T,
 ) -> (T, Vec<String>) {
     let (table, faults) = (entries(settings), RefCell::default());
-    let actual = read(&Settings::new(&table, Path::new("."), &faults));
-    (actual, faults.into_inner().into_iter().map(|fault| fault.message).collect())
+    let result = read(&Settings::new(&table, Path::new("."), &faults));
+    (result, faults.into_inner().into_iter().map(|fault| fault.message).collect())
 }

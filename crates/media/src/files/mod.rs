@@ -45,10 +45,10 @@ fn chosen<'a, T>(
 ) -> Result<&'a T, Unreadable> {
     let all = || grids.iter().map(|grid| about(grid).2).take(20).collect::<Vec<_>>().join(", ");
     if let Some(name) = name {
-        let actual = grids.iter().find(|grid| about(grid).0 == name);
+        let result = grids.iter().find(|grid| about(grid).0 == name);
         let message = || format!("it has no grid {}, but {}", shown(name), all());
         let missing = || wrong(message(), "choose one of its grids of floats");
-        return actual.map_or_else(missing, Ok);
+        return result.map_or_else(missing, Ok);
     }
     match grids.iter().filter(|grid| about(grid).1).collect::<Vec<_>>()[..] {
         [] => wrong(format!("it has no grid of floats, but {}", all()), convert),
@@ -111,8 +111,8 @@ pub fn writable(path: &Path) -> io::Result<()> {
 /// Path of the file behind links; `None` if it is no plain file.
 fn place(path: &Path) -> io::Result<Option<PathBuf>> {
     match fs::metadata(path) {
-        Ok(actual) if actual.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
-        Ok(actual) if actual.is_file() => fs::canonicalize(path).map(Some),
+        Ok(result) if result.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
+        Ok(result) if result.is_file() => fs::canonicalize(path).map(Some),
         Ok(_) => Ok(None),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Some(path.to_owned())),
         Err(error) => Err(error),

@@ -155,11 +155,11 @@ mod tests {
         let whole = header("'<f4'", "False", "(2, 3)");
         let file = [whole.clone(), vec![7; 24]].concat();
         let mut source = &file[..];
-        let actual = bytes(&mut source).expect("a slice has no errors");
-        assert_eq!((&actual, source.len()), (&whole, 24));
-        let read = parse(&actual).expect("a header");
+        let result = bytes(&mut source).expect("a slice has no errors");
+        assert_eq!((&result, source.len()), (&whole, 24));
+        let read = parse(&result).expect("a header");
         assert_eq!(read, Header { kind: "<f4".into(), fortran_order: false, shape: vec![2, 3] });
-        assert!(parse(&actual[..30]).is_err(), "cut");
+        assert!(parse(&result[..30]).is_err(), "cut");
     }
 
     #[test]

@@ -62,7 +62,7 @@ fn indented(line: &str, pen: Pen) -> Vec<String> {
 /// Adds one line per failing finding, and the command that repeats it, on one line so that it can be copied.
 fn failures(text: &mut String, pen: Pen, record: &Record) {
     let failures = failing(record, Verdict::Fail);
-    let mut told: Vec<Vec<String>> = Vec::new();
+    let mut lines: Vec<Vec<String>> = Vec::new();
     for (i, failure) in failures.iter().enumerate() {
         let word = Verdict::Fail.word();
         pen.note(text, &format!("{word} {}", failure.line()), (word, Paint::Red));
@@ -75,11 +75,11 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
         let is_last = next.is_none_or(|next| {
             next.row.name() != failure.row.name() || next.row.case.name != failure.row.case.name
         });
-        if is_last && !likely.is_empty() && !told.contains(&likely) {
+        if is_last && !likely.is_empty() && !lines.contains(&likely) {
             for part in likely.iter().flat_map(|line| indented(line, pen)) {
                 let _ = writeln!(text, "{part}");
             }
-            told.push(likely);
+            lines.push(likely);
         }
     }
     if !failures.is_empty() {

@@ -108,7 +108,7 @@ fn numbers(row: &Row) -> Markup {
         let at = open.iter().position(|check| *check == finding.check && !finding.expects_bias);
         at.map(|at| open.remove(at)).is_none()
     });
-    let (told, plain): (Vec<_>, Vec<_>) = rest.partition(|finding| {
+    let (detailed, plain): (Vec<_>, Vec<_>) = rest.partition(|finding| {
         finding.gate.is_some() || finding.reason.is_some() || finding.verdict != Verdict::Pass
     });
     html! {
@@ -119,7 +119,7 @@ fn numbers(row: &Row) -> Markup {
                 } } }
                 tbody {
                     @for line in &lines { (numbers_of(line)) }
-                    @for finding in told { tr {
+                    @for finding in detailed { tr {
                         th colspan="5" { (name(finding)) @if finding.expects_bias { " (bias declared)" } }
                         td { (finding.p.map_or_else(String::new, p)) }
                         (says(finding))

@@ -41,19 +41,19 @@ const CONVERT: &str = "grids of the types Float, Fp4, Fp8, Fp16 and FpN are read
 pub fn read(file: &[u8], name: Option<&str>) -> Result<VdbGrid, Unreadable> {
     let grids = list(file)?;
     let about = |grid: &NvdbEntry| (grid.name.clone(), grid.is_read(), grid.shown());
-    let actual = chosen(&grids, name, about, CONVERT)?;
-    let Some(values) = nodes::LeafValues::of(actual.number) else {
-        let message = format!("its grid {} has the type {}", shown(&actual.name), actual.kind);
+    let result = chosen(&grids, name, about, CONVERT)?;
+    let Some(values) = nodes::LeafValues::of(result.number) else {
+        let message = format!("its grid {} has the type {}", shown(&result.name), result.kind);
         return wrong(message, CONVERT);
     };
-    let [from, to] = actual.place;
-    let grid = unpacking::unpacked(&file[from..to], actual.codec, actual.size)?;
+    let [from, to] = result.place;
+    let grid = unpacking::unpacked(&file[from..to], result.codec, result.size)?;
     let tree = nodes::read(&grid, values)?;
-    if tree.active != actual.active {
-        let (said, actual) = (actual.active, tree.active);
-        return damaged(format!("{said} voxels are announced to be active, and {actual} are"));
+    if tree.active != result.active {
+        let (said, result) = (result.active, tree.active);
+        return damaged(format!("{said} voxels are announced to be active, and {result} are"));
     }
-    let (name, class) = (actual.name.clone(), actual.class.clone());
+    let (name, class) = (result.name.clone(), result.class.clone());
     Ok(VdbGrid { name, class, transform: transform(&grid)?, tree })
 }
 
