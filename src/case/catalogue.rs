@@ -17,13 +17,13 @@ use theory::problems::{MultipleScattering, Named};
 ///
 /// ```
 /// use trueflight::catalogue::{OwnPage, Page};
-/// use trueflight::case::Source;
+/// use trueflight::case::CaseText;
 /// use trueflight::{Catalogue, media::own::Formula};
 ///
 /// let page = Page { module: "haze", source: "Haze that thins out with the height." };
 /// let haze = OwnPage::line(page, &[], |_| Some(Formula::new(|t: f64| 1.0 / (1.0 + t * t))));
 /// let catalogue = Catalogue::builtin().with(haze)?;
-/// let case = catalogue.read(&Source {
+/// let case = catalogue.read(&CaseText {
 ///     name: "mine".into(),
 ///     path: "mine.toml".into(),
 ///     text: r#"

@@ -9,7 +9,7 @@ const NONE: [&str; 14] = [
     "cannot encode as json: {0}",
     "cannot encode truth.json: {0}",
     "cannot draw {figure}: {message}",
-    "a record of form {found}",
+    "a record of form {actual}",
     "not a record, or a broken one",
     "{case} cannot be exported: theory has no answer",
     "{path}: no case file (*.toml)",
@@ -17,8 +17,8 @@ const NONE: [&str; 14] = [
     "{case}: `{estimator}`",
     "check `{}`: ",
     "the estimator panicked in draw {draw}",
-    "{what} takes {wanted}, but was given {}",
-    "needs {needs}, but {found}",
+    "{what} takes {expected}, but was given {}",
+    "needs {needs}, but {actual}",
 ];
 
 /// Returns the messages of the error types in a source text: the format strings of `#[error("…")]`, and those that

@@ -142,10 +142,10 @@ impl Pushed {
     /// The error of the source.
     ///
     /// ```
-    /// use trueflight_gate::check::{CheckError, Request};
+    /// use trueflight_gate::check::{CheckError, BlockRequest};
     ///
     /// let mut pushed = trueflight_gate::claim("uniform").truth(0.5).range(0.0, 1.0).open()?;
-    /// pushed.drive(|pushed, request: Request| {
+    /// pushed.drive(|pushed, request: BlockRequest| {
     ///     let mut stream = request.stream();
     ///     let draws: Vec<f64> = (0..request.draws).map(|_| stream.uniform()).collect();
     ///     pushed.absorb(&draws)?;

@@ -15,7 +15,7 @@
 //! `α_d` is α, but not below 1e-4. The list of suspect tiles is by e-BH: on average at most 5 % of it are false.
 //!
 //! ```
-//! use trueflight_judge::images::{Claim, Level, Size, Stack, Options, judge};
+//! use trueflight_judge::images::{Claim, ImageOptions, Level, Size, Stack, judge};
 //! use gate::stats::verdict::Verdict;
 //!
 //! // 64 passes of 32 × 32 pixels, each the mean of four fair coins.
@@ -29,9 +29,9 @@
 //! });
 //! let stack = Stack::new(64, size, coins.collect())?;
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(Level::All(0.5)) };
-//! assert_eq!(judge(&stack, &claim, &Options::default())?.verdict, Verdict::Pass);
+//! assert_eq!(judge(&stack, &claim, &ImageOptions::default())?.verdict, Verdict::Pass);
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(Level::All(0.52)) };
-//! assert_eq!(judge(&stack, &claim, &Options::default())?.verdict, Verdict::Fail);
+//! assert_eq!(judge(&stack, &claim, &ImageOptions::default())?.verdict, Verdict::Fail);
 //! # Ok::<(), trueflight_judge::images::ImageError>(())
 //! ```
 

@@ -90,6 +90,12 @@ pub const fn balanced(shadow: Shadow, densities: Densities) -> Techniques {
     Techniques { shadow: Some(shadow), combination }
 }
 
+/// Returns e^−τ of an optical depth τ.
+#[inline(always)]
+pub fn transmittance<L: Lane>(depth: L) -> L {
+    (-depth).exp()
+}
+
 /// `∫σ̂` from distances to the end of a medium.
 pub fn flight_to_end<P: Estimated<Fields = Along>, L: Lane>(setup: &Setup<P>, t: L) -> L {
     let (sampling, end) = (&setup.fields.sampling, setup.fields.mesh.support().to);
@@ -114,7 +120,7 @@ impl Change<ToEmitter<'_>> for Wrong<'_> {
         let inside = walk.fly(path, route, depth);
         if self.bug == Bug::LastSegment {
             // What is left is the last segment's.
-            path.shadow.lit.scale_where(path.shadow.casts & inside, (-depth).exp());
+            path.shadow.lit.scale_where(path.shadow.casts & inside, transmittance(depth));
         }
         inside
     }

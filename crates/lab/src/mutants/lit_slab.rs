@@ -5,7 +5,7 @@
 //! ```
 
 use super::altered::{Altered, Change};
-use super::lit_rod::{balanced, flight_to_end, next_event};
+use super::lit_rod::{balanced, flight_to_end, next_event, transmittance};
 use super::{Mutant, MutantRow, On, family, filled, on};
 use estimators::Setup;
 use estimators::lit_slab::walk::{Path, ToLight};
@@ -88,7 +88,7 @@ impl Change<ToLight<'_>> for Wrong<'_> {
         let inside = walk.fly(path, route, depth);
         if self.bug == Bug::LastSegment {
             // What is left is the last segment's.
-            path.shadow.lit.scale_where(path.shadow.casts & inside, (-depth).exp());
+            path.shadow.lit.scale_where(path.shadow.casts & inside, transmittance(depth));
         }
         inside
     }

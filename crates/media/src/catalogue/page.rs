@@ -30,9 +30,9 @@ macro_rules! draw_in_rust {
         "`trueflight run case.toml` draws this case from a file, and this code draws it in a program:
 
 ```no_run
-use trueflight::case::{Case, Source};
+use trueflight::case::{Case, CaseText};
 
-let case = Case::read(&Source::read(\"case.toml\".as_ref())?)?;
+let case = Case::read(&CaseText::read(\"case.toml\".as_ref())?)?;
 let draws = case.at(None)?.draws(0, 1, 1_000)?; // of the first estimator, with seed 1
 println!(\"{:?} after {:?} lookups\", draws.values[0], draws.lookups); // of channel 0
 # Ok::<(), Box<dyn std::error::Error>>(())

@@ -51,7 +51,7 @@ impl Default for Terms {
 ///
 /// ```
 /// use trueflight_judge::images::against::{Terms, compare};
-/// use trueflight_judge::images::{Size, Stack, Options};
+/// use trueflight_judge::images::{ImageOptions, Size, Stack};
 /// use gate::stats::verdict::Verdict;
 ///
 /// // 16 passes of 16 × 16 pixels, each the mean of four fair coins, times a factor.
@@ -65,7 +65,7 @@ impl Default for Terms {
 ///     });
 ///     Stack::new(16, size, coins.collect())
 /// };
-/// let (reference, terms, wanted) = (stack(1, 1.0)?, Terms::default(), Options::default());
+/// let (reference, terms, wanted) = (stack(1, 1.0)?, Terms::default(), ImageOptions::default());
 /// assert_ne!(compare(&stack(2, 1.0)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
 /// assert_eq!(compare(&stack(2, 1.2)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
 /// # Ok::<(), trueflight_judge::images::ImageError>(())
