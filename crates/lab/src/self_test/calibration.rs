@@ -181,14 +181,14 @@ impl Counts {
     ) -> Calibration {
         let mut rates = vec![Rate::new("a correct run fails", self.failed_runs, self.runs, ALPHA)];
         let share = 0.8 * ALPHA / scalars.max(1) as f64;
-        rates.extend(self.scalars.iter().map(|(check, &[all, failed])| {
+        rates.extend(by_name(self.scalars).into_iter().map(|(check, [all, failed])| {
             Rate::new(format!("a correct {check} fails"), failed, all, share)
         }));
-        rates.extend(self.biased.iter().map(|(check, &[all, passed])| {
+        rates.extend(by_name(self.biased).into_iter().map(|(check, [all, passed])| {
             Rate::new(format!("a {check} off by its tolerance passes"), passed, all, MISS)
         }));
-        let uniformity =
-            self.p.into_iter().map(|(check, p)| Uniformity::new(is_uniform(check), check, p));
+        let p = by_name(self.p).into_iter();
+        let uniformity = p.map(|(check, p)| Uniformity::new(is_uniform(check), check, p));
         Calibration {
             runs: self.runs,
             scalars,
@@ -198,6 +198,13 @@ impl Counts {
             uniformity: uniformity.collect(),
         }
     }
+}
+
+/// Returns the entries in the order of the checks' names, as in the tables.
+fn by_name<T>(of: BTreeMap<CheckId, T>) -> Vec<(CheckId, T)> {
+    let mut entries: Vec<_> = of.into_iter().collect();
+    entries.sort_by_key(|(check, _)| check.name());
+    entries
 }
 
 impl Uniformity {
