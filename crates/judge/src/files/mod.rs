@@ -122,7 +122,7 @@ impl DrawSource {
     ///
     /// # Errors
     ///
-    /// The errors of [`Draws::open`], and files with other columns.
+    /// The errors of [`DrawSource::open`], and files with other columns.
     pub fn open_as(
         path: &Path,
         format: NumberFormat,
@@ -153,7 +153,7 @@ impl DrawSource {
     ///
     /// # Errors
     ///
-    /// The errors of [`Draws::from_reader`], and sources with other columns.
+    /// The errors of [`DrawSource::from_reader`], and sources with other columns.
     pub fn from_reader_as(
         reader: impl Read + Send + 'static,
         name: &str,

@@ -8,7 +8,7 @@
 //! the walk makes the estimator's own draws, bit for bit. That control, its *twin*, shows that only the bug was
 //! changed. One file holds one family of bugs, and a mutant is one line of its family's table: its name, the bug in a
 //! sentence, where the bug is caught and by which check, and the wrong code. Bugs along a ray are changes of a number
-//! in the loop of one walk ([`line`]). Other walks have a walk around them that changes a step ([`altered`]). Wrong
+//! in the loop of one walk ([`line`]). Other walks have a walk around them that changes a step (`altered`). Wrong
 //! [`streams`] are a family of their own: correct estimators with wrong random numbers.
 //!
 //! The bugs are those that renderers and transport codes have had, and those that a formula of this

@@ -46,7 +46,7 @@ pub enum DrawDistribution {
     LogNormal(f64),
     /// 1, and 1e5 more with probability 1e-5.
     Spike,
-    /// [`Law::Spike`] with a uniform noise of width 1e-4.
+    /// [`DrawDistribution::Spike`] with a uniform noise of width 1e-4.
     NoisySpike,
     /// Uniform on an interval of length 1e-9 about 1.
     Narrow,

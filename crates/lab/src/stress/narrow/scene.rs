@@ -11,7 +11,7 @@
 
 use numeric::Lane;
 
-/// Settings of the ray in 1-D. Words in capitals become numbers, see [`Scene::case`].
+/// Settings of the ray in 1-D. Words in capitals become numbers, see [`StressScene::case`].
 pub const RAY: &str = "span = [FROM, TO]\nmedium.sines = { base = DEPTH, amplitudes = [WAVE], \
     frequencies = [18.84955592153876], phases = [0] }";
 /// Settings of this ray in space, with a point light beside it.

@@ -1,7 +1,7 @@
 //! The slab cut into panels, with all integrals from its depths to its end.
 //!
 //! Panels end where σ_t and σ̂ have breaks. They resolve the powers of 1 − r that are needed. They are as short as
-//! a [`Resolution`] requires for the lowest direction and before a disc.
+//! a [`LitResolution`] requires for the lowest direction and before a disc.
 
 use crate::Mesh;
 use crate::problems::lit_slab::LightBehind;
