@@ -144,10 +144,10 @@ fn absorb(
 #[pyfunction]
 pub fn judge(
     py: Python<'_>,
-    requested: ClaimRequest,
+    asked: ClaimRequest,
     arrays: &Bound<'_, PyAny>,
 ) -> PyResult<(&'static str, String, String, String)> {
-    let (mut pushed, mut arrays) = (requested.open(py)?, arrays.try_iter()?);
+    let (mut pushed, mut arrays) = (asked.open(py)?, arrays.try_iter()?);
     pushed.drive(|pushed, _| {
         let Some(array) = arrays.next() else { return Ok(false) };
         let (draws, lookups): (Bound<'_, PyAny>, Option<Bound<'_, PyAny>>) = array?.extract()?;

@@ -62,14 +62,14 @@ impl RunRequest {
 pub fn predict(
     py: Python<'_>,
     cases: CaseRequest,
-    expected: &Bound<'_, PyAny>,
+    wanted: &Bound<'_, PyAny>,
     optimum: bool,
 ) -> PyResult<String> {
-    let expected: RunRequest = expected.extract()?;
+    let wanted: RunRequest = wanted.extract()?;
     let predicted = if optimum { build::predicted_with_optima } else { build::predicted };
-    work(py, expected.threads, None, move |_| {
+    work(py, wanted.threads, None, move |_| {
         let cases = cases.read()?;
-        columns(&predicted(&expected.plan(&cases)?))
+        columns(&predicted(&wanted.plan(&cases)?))
     })
 }
 
@@ -82,13 +82,13 @@ pub fn predict(
 pub fn run(
     py: Python<'_>,
     cases: CaseRequest,
-    expected: &Bound<'_, PyAny>,
+    wanted: &Bound<'_, PyAny>,
     tell: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let expected: RunRequest = expected.extract()?;
-    work(py, expected.threads, tell, move |progress| {
+    let wanted: RunRequest = wanted.extract()?;
+    work(py, wanted.threads, tell, move |progress| {
         let cases = cases.read()?;
-        let plan = expected.plan(&cases)?;
+        let plan = wanted.plan(&cases)?;
         columns(&drawn(&plan, progress))
     })
 }
