@@ -159,7 +159,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         return images::main(arguments, console);
     }
     let claimed = arguments.claimed(catalogue)?;
-    let expected = Options {
+    let options = Options {
         tolerance: arguments.tolerance,
         variance_tolerance: arguments.variance_tolerance,
         alpha: arguments.alpha / arguments.files.len() as f64,
@@ -168,11 +168,11 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         maximum: arguments.draws,
     };
     // Mistakes in the arguments are reported before anything is read.
-    claimed.check(expected)?;
-    if let Some(tolerance) = expected.tolerance.filter(|_| claimed.is_relative()) {
+    claimed.check(options)?;
+    if let Some(tolerance) = options.tolerance.filter(|_| claimed.is_relative()) {
         numbers::check_share("--tolerance", tolerance)?;
     }
-    if let Some(tolerance) = expected.variance_tolerance {
+    if let Some(tolerance) = options.variance_tolerance {
         numbers::check_share("--variance-tolerance", tolerance)?;
     }
     if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
@@ -181,7 +181,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     arguments.check_junit("draws")?;
     let (mut judged, mut errors) = (Vec::new(), Vec::new());
     for file in &arguments.files {
-        match arguments.judge(file, &claimed, expected) {
+        match arguments.judge(file, &claimed, options) {
             Ok(finding) => judged.extend(finding),
             Err(error) => errors.push((name(file), error)),
         }
@@ -270,7 +270,7 @@ impl Arguments {
         &self,
         file: &Path,
         claimed: &Claimed,
-        expected: Options,
+        options: Options,
     ) -> anyhow::Result<Vec<JudgedDraws>> {
         let format = self.input_format(file)?;
         let layout = claimed.layout(self.column.as_deref());
@@ -282,9 +282,9 @@ impl Arguments {
                 DrawSource::open_as(file, format, &layout)?
             };
             let length = draws.known_length();
-            let maximum = expected.maximum.or_else(|| length.is_none().then_some(OF_A_PIPE));
-            let expected = Options { maximum, ..expected };
-            return claimed.judge(&name(file), &mut draws, expected, length);
+            let maximum = options.maximum.or_else(|| length.is_none().then_some(OF_A_PIPE));
+            let options = Options { maximum, ..options };
+            return claimed.judge(&name(file), &mut draws, options, length);
         }
         let length =
             match (DrawSource::open_as(file, format.clone(), &layout)?.known_length(), &format) {
@@ -297,7 +297,7 @@ impl Arguments {
                 (length, _) => length,
             };
         let mut draws = DrawSource::open_as(file, format, &layout)?;
-        claimed.judge(&name(file), &mut draws, expected, length)
+        claimed.judge(&name(file), &mut draws, options, length)
     }
 
     fn input_format(&self, file: &Path) -> anyhow::Result<NumberFormat> {

@@ -59,18 +59,18 @@ pub struct Numbers {
 }
 
 impl From<&Judgement> for Numbers {
-    fn from(computed: &Judgement) -> Self {
+    fn from(judgement: &Judgement) -> Self {
         let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
         Self {
-            verdict: computed.verdict.into(),
-            draws: computed.draws,
-            truth: computed.truth,
-            mean: number(computed.mean),
-            standard_error: number(computed.standard_error),
-            z: number(computed.z),
-            variance: number(computed.variance),
-            variance_ratio: number(computed.variance_ratio),
-            kurtosis: number(computed.kurtosis),
+            verdict: judgement.verdict.into(),
+            draws: judgement.draws,
+            truth: judgement.truth,
+            mean: number(judgement.mean),
+            standard_error: number(judgement.standard_error),
+            z: number(judgement.z),
+            variance: number(judgement.variance),
+            variance_ratio: number(judgement.variance_ratio),
+            kurtosis: number(judgement.kurtosis),
         }
     }
 }
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn tf_check_numbers(
     unsafe {
         status(query(check, |check| {
             let outcome = check.judged()?;
-            let computed = outcome.values.get(value).ok_or_else(|| {
+            let verdict = outcome.values.get(value).ok_or_else(|| {
                 let (name, values) = (&outcome.name, outcome.values.len());
                 let message = format!(
                     "check `{name}`: there is no value {value}; the last one is value {}",
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn tf_check_numbers(
                 );
                 Error::new(Status::Index, message)
             })?;
-            write("the place of the numbers", numbers, computed.into())
+            write("the place of the numbers", numbers, verdict.into())
         }))
     }
 }
@@ -155,11 +155,11 @@ fn status(result: Result<(), Status>) -> Status {
 /// Returns a text of a check after judging it; without a verdict the text is the error's message.
 unsafe fn words(check: *mut Check, words: impl Fn(&Session) -> *const c_char) -> *const c_char {
     // SAFETY: rules for checks.
-    let computed = unsafe {
+    let text = unsafe {
         query(check, |check| {
             let _ = check.judged();
             Ok(words(check))
         })
     };
-    computed.unwrap_or_else(|_| tf_last_error())
+    text.unwrap_or_else(|_| tf_last_error())
 }

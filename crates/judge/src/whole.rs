@@ -29,24 +29,24 @@ const FIRST: u64 = 1 << 11;
 pub struct KnownDistribution(pub Arc<Prediction>);
 
 impl Distribution for KnownDistribution {
-    fn tests(&self, requested: TestRequest) -> Result<Box<dyn Tests>, String> {
+    fn tests(&self, request: TestRequest) -> Result<Box<dyn Tests>, String> {
         let Prediction { distribution, increments, channels, .. } = &*self.0;
         let has_values = distribution.is_some() || !increments.is_empty();
-        let is_known = (has_values && requested.values == channels.len())
-            || has_covariances(&self.0, requested);
-        let has_counts = requested.has_lookups && checks::counts::is_known(&self.0);
-        if let (false, false, Some(why)) = (is_known, has_counts, unknown(&self.0, requested)) {
+        let is_known =
+            (has_values && request.values == channels.len()) || has_covariances(&self.0, request);
+        let has_counts = request.has_lookups && checks::counts::is_known(&self.0);
+        if let (false, false, Some(why)) = (is_known, has_counts, unknown(&self.0, request)) {
             return Err(why);
         }
         Ok(Box::new(DistributionTests {
             prediction: Arc::clone(&self.0),
-            requested,
+            request,
             tests: None,
             untested: Vec::new(),
             seen: 0,
-            next: requested.length.unwrap_or(FIRST),
+            next: request.length.unwrap_or(FIRST),
             looks: 0,
-            buffer: DrawBuffer::new(requested.values),
+            buffer: DrawBuffer::new(request.values),
         }))
     }
 }
@@ -97,7 +97,7 @@ impl Test {
 /// All tests of a distribution.
 struct DistributionTests {
     prediction: Arc<Prediction>,
-    requested: TestRequest,
+    request: TestRequest,
     /// Tests, made with the first draws, which show their precision.
     tests: Option<Vec<Test>>,
     untested: Vec<String>,
@@ -129,7 +129,7 @@ impl Tests for DistributionTests {
     }
 
     fn close(self: Box<Self>) -> Tested {
-        let Self { prediction, requested, tests, mut untested, seen, .. } = *self;
+        let Self { prediction, request, tests, mut untested, seen, .. } = *self;
         let (mut findings, mut rounded, mut few) = (Vec::new(), Vec::new(), Vec::new());
         for Test { what, between, finding, .. } in tests.unwrap_or_default() {
             match finding {
@@ -143,13 +143,13 @@ impl Tests for DistributionTests {
             untested.push(format!("{} not tested: {why}", listed(&rounded)));
         }
         if !few.is_empty() {
-            let why = match requested.length {
+            let why = match request.length {
                 Some(length) if seen < length => format!("{seen} of {length} announced draws came"),
                 _ => format!("{seen} draws are too few"),
             };
             untested.push(format!("{} not tested: {why}", listed(&few)));
         }
-        untested.extend(unknown(&prediction, requested));
+        untested.extend(unknown(&prediction, request));
         Tested { findings, untested }
     }
 }
@@ -166,7 +166,7 @@ fn listed(things: &[Cow<str>]) -> String {
 impl DistributionTests {
     /// Returns the tests for draws of that precision, those of lookups first.
     fn prepared(&mut self, is_single: bool) -> Vec<Test> {
-        let (prediction, request) = (&self.prediction, self.requested);
+        let (prediction, request) = (&self.prediction, self.request);
         let mut foreign = checks::of_foreign(&ForeignDraws { prediction, request, is_single });
         foreign.sort_by_key(|(check, _)| *check != CheckId::Counts);
         let mut tests = Vec::new();
@@ -202,13 +202,13 @@ impl DistributionTests {
     /// Looks at all p-values.
     fn look(&mut self) {
         let draws = self.seen;
-        let share = match self.requested.length {
+        let share = match self.request.length {
             Some(_) => 1.0,
             None => 1.0 / (f64::from(self.looks + 1) * f64::from(self.looks + 2)),
         };
         let tests = self.tests.as_deref_mut().unwrap_or_default();
         let p: Vec<Option<f64>> = tests.iter().map(|test| test.p_value(draws as f64)).collect();
-        let rejected = multiplicity::holm(&p, p.len(), share * self.requested.alpha);
+        let rejected = multiplicity::holm(&p, p.len(), share * self.request.alpha);
         for ((test, p), is_rejected) in tests.iter_mut().zip(p).zip(rejected) {
             // A p-value of NaN comes from draws that are not finite, which are reported elsewhere.
             if let Some(p) = p {
@@ -217,21 +217,21 @@ impl DistributionTests {
         }
         self.looks += 1;
         // With a known length, this was the only look.
-        if self.requested.length.is_none() {
+        if self.request.length.is_none() {
             self.next = self.next.saturating_mul(2);
         }
     }
 }
 
 /// Returns whether theory knows covariances of the values.
-fn has_covariances(prediction: &Prediction, requested: TestRequest) -> bool {
-    prediction.covariances.iter().any(|covariance| covariance.pair[1] < requested.values)
+fn has_covariances(prediction: &Prediction, request: TestRequest) -> bool {
+    prediction.covariances.iter().any(|covariance| covariance.pair[1] < request.values)
 }
 
 /// Returns a sentence about the part of the values' distribution that theory does not know.
-fn unknown(prediction: &Prediction, requested: TestRequest) -> Option<String> {
+fn unknown(prediction: &Prediction, request: TestRequest) -> Option<String> {
     let Prediction { distribution, increments, channels, .. } = prediction;
-    if requested.values != channels.len() && !increments.is_empty() {
+    if request.values != channels.len() && !increments.is_empty() {
         let why = "it takes all channels of a draw";
         return Some(format!("the distribution along the curve is not tested: {why}"));
     }
@@ -239,7 +239,7 @@ fn unknown(prediction: &Prediction, requested: TestRequest) -> Option<String> {
         return None;
     }
     let has_moments = channels.iter().any(|channel| channel.moments.is_some());
-    let known = match (has_covariances(prediction, requested), has_moments) {
+    let known = match (has_covariances(prediction, request), has_moments) {
         (true, _) => "means, variances and covariances",
         (false, true) => "mean and variance",
         (false, false) => "the mean",

@@ -31,12 +31,12 @@ impl Claimed {
     }
 
     /// Validates the options of the gate against the claims.
-    pub(super) fn check(&self, expected: Options) -> Result<(), ClaimError> {
+    pub(super) fn check(&self, options: Options) -> Result<(), ClaimError> {
         let judged = |(index, _): &(usize, _)| self.channel.is_none_or(|channel| channel == *index);
         let claims = self.claims.iter().enumerate().filter(judged);
         claims
             .map(|(_, (_, claim))| *claim)
-            .try_for_each(|claim| CheckedClaim::new(claim, expected, None).map(drop))
+            .try_for_each(|claim| CheckedClaim::new(claim, options, None).map(drop))
     }
 
     /// Returns the columns of a file that are judged.
@@ -55,7 +55,7 @@ impl Claimed {
         &self,
         file: &str,
         draws: &mut DrawSource,
-        expected: Options,
+        options: Options,
         length: Option<u64>,
     ) -> anyhow::Result<Vec<JudgedDraws>> {
         let values = draws.values();
@@ -68,8 +68,8 @@ impl Claimed {
             has_lookups,
             is_mean_only: self.is_mean_only,
         });
-        let session = Session::new(&claims, expected, length, taken)?;
-        let judgements = session.judge(draws, expected.until())?;
+        let session = Session::new(&claims, options, length, taken)?;
+        let judgements = session.judge(draws, options.until())?;
         let named =
             judgements.into_iter().zip(named).map(|(judgement, (channel, _))| JudgedDraws {
                 file: file.to_owned(),

@@ -101,7 +101,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if let (Some(tolerance), true) = (arguments.tolerance, arguments.truth != Some(0.0)) {
         numbers::check_share("--tolerance", tolerance)?;
     }
-    let expected = ImageOptions {
+    let options = ImageOptions {
         tile: images.tile.map(|tile| tile as usize),
         tolerance: arguments.tolerance,
         alpha: arguments.alpha,
@@ -110,7 +110,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if !images.against.is_empty() {
         name = format!("{name} against {}", self::name(&images.against));
     }
-    let judgement = match judged(arguments, &expected) {
+    let judgement = match judged(arguments, &options) {
         Ok(judgement) => judgement,
         Err(error) => {
             arguments.write_junit(&[], &[(name, format!("{error:#}"))])?;
@@ -136,7 +136,7 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
 }
 
 /// Reads and judges.
-fn judged(arguments: &super::Arguments, expected: &ImageOptions) -> anyhow::Result<Judgement> {
+fn judged(arguments: &super::Arguments, options: &ImageOptions) -> anyhow::Result<Judgement> {
     let images = &arguments.images;
     let judged_files = passes(&arguments.files)?;
     let (against, variance_stack) = (passes(&images.against)?, passes(&images.variance_stack)?);
@@ -156,7 +156,7 @@ fn judged(arguments: &super::Arguments, expected: &ImageOptions) -> anyhow::Resu
         let reference = read(&against)?;
         let terms =
             Terms { is_same_distribution: images.same_distribution, rounding: arguments.rounding };
-        return Ok(compare(&stack, &reference, terms, expected)?);
+        return Ok(compare(&stack, &reference, terms, options)?);
     }
     let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {
         (Some(value), _) => Ok(Some(Level::All(value))),
@@ -183,7 +183,7 @@ fn judged(arguments: &super::Arguments, expected: &ImageOptions) -> anyhow::Resu
         range: arguments.range,
         rounding: arguments.rounding,
     };
-    Ok(judge(&read(&judged_files)?, &claim, expected)?)
+    Ok(judge(&read(&judged_files)?, &claim, options)?)
 }
 
 /// Returns the files of a stack; those of a folder in the order of their names.

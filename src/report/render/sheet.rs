@@ -155,17 +155,17 @@ fn words(face: &Typeface, exposure: &ExposureRecord, room: f64) -> Vec<String> {
     lines
 }
 
-fn costs(finding: &Exposure) -> Vec<String> {
-    let predicted = finding.predicted_rmse.map(|rmse| format!(" (theory {})", short(rmse)));
-    let merit = finding.figure_of_merit.map_or("–".into(), short);
+fn costs(exposure: &Exposure) -> Vec<String> {
+    let predicted = exposure.predicted_rmse.map(|rmse| format!(" (theory {})", short(rmse)));
+    let merit = exposure.figure_of_merit.map_or("–".into(), short);
     let mut lines = vec![
-        format!("RMSE {}{}", short(finding.rmse), predicted.unwrap_or_default()),
-        format!("lookups/pixel {}", short(finding.lookups)),
-        format!("draws/pixel {}", short(finding.draws)),
+        format!("RMSE {}{}", short(exposure.rmse), predicted.unwrap_or_default()),
+        format!("lookups/pixel {}", short(exposure.lookups)),
+        format!("draws/pixel {}", short(exposure.draws)),
         format!("figure of merit {merit}"),
     ];
-    if finding.pilots > 0.0 {
-        lines.push(format!("pilot lookups/pixel {}", short(finding.pilots)));
+    if exposure.pilots > 0.0 {
+        lines.push(format!("pilot lookups/pixel {}", short(exposure.pilots)));
     }
     lines
 }

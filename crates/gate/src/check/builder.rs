@@ -155,32 +155,32 @@ impl<S> Check<S> {
     /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). The default is 1 %, or
     /// with [`Check::draws`] the bias that this number of draws can detect, at most 5 %.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.said.expected.tolerance = Some(tolerance);
+        self.said.options.tolerance = Some(tolerance);
         self
     }
 
     /// ε of the variance, relative to it.
     pub fn variance_tolerance(mut self, tolerance: f64) -> Self {
-        self.said.expected.variance_tolerance = Some(tolerance);
+        self.said.options.variance_tolerance = Some(tolerance);
         self
     }
 
     /// Judges averages of `batch` consecutive draws: for draws that are correlated with the ones before. Variance
     /// and kurtosis are then those of an average, and only the mean is taken from theory.
     pub fn batch(mut self, batch: u64) -> Self {
-        self.said.expected.batch = batch;
+        self.said.options.batch = batch;
         self
     }
 
     /// α: the probability that a correct estimator fails; the default is 1e-3.
     pub fn alpha(mut self, alpha: f64) -> Self {
-        self.said.expected.alpha = alpha;
+        self.said.options.alpha = alpha;
         self
     }
 
     /// Makes exactly this number of draws, instead of stopping at a decision.
     pub fn draws(mut self, draws: u64) -> Self {
-        self.said.expected.maximum = Some(draws);
+        self.said.options.maximum = Some(draws);
         self
     }
 
@@ -202,7 +202,7 @@ impl<S> Check<S> {
             0 => Err(CheckFault::NoValues),
             1..=MAX_VALUES => {
                 let claims = said.claims(values, has_lookups)?;
-                Session::new(&claims, said.expected, length, said.taken(has_lookups))
+                Session::new(&claims, said.options, length, said.taken(has_lookups))
                     .map_err(CheckFault::Claim)
             }
             _ => Err(CheckFault::TooManyValues(values)),
@@ -226,7 +226,7 @@ pub(super) struct Said {
     pub(super) values: Option<usize>,
     pub(super) mean_only: bool,
     /// Error rate, tolerances and number of draws.
-    pub(super) expected: Options,
+    pub(super) options: Options,
     pub(super) seed: u64,
 }
 
@@ -242,7 +242,7 @@ impl Default for Said {
             theory: None,
             values: None,
             mean_only: false,
-            expected: Options::default(),
+            options: Options::default(),
             seed: 1,
         }
     }
@@ -263,7 +263,7 @@ impl Said {
 
     /// True if only the mean comes from theory: averages of draws have another variance and distribution.
     fn is_mean_only(&self) -> bool {
-        self.mean_only || self.expected.batch > 1
+        self.mean_only || self.options.batch > 1
     }
 
     /// Returns whether theory has a claim on lookups.
@@ -302,7 +302,7 @@ impl Said {
             Some(PerValue(list)) if list.len() == 1 => Ok(Some(list[0])),
             Some(PerValue(list)) if list.len() == values => Ok(Some(list[index])),
             Some(PerValue(list)) => {
-                Err(CheckFault::Values { what, result: list.len(), expected: values })
+                Err(CheckFault::Values { what, actual: list.len(), expected: values })
             }
         };
         let theory = match &self.theory {
@@ -310,7 +310,7 @@ impl Said {
             Some(Err(message)) => return Err(CheckFault::Case(message.clone())),
             Some(Ok(known)) => {
                 let channels = known.channels_of(values).ok_or_else(|| CheckFault::Channels {
-                    result: values,
+                    actual: values,
                     channels: known.names(),
                     expected: known.widths(),
                 })?;

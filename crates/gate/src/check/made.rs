@@ -58,7 +58,7 @@ impl Check<()> {
         self,
         mut source: impl FnMut(BlockRequest) -> Result<Block, Panic>,
     ) -> Result<Outcome, CheckError> {
-        let (name, seed, length) = (self.name.clone(), self.said.seed, self.said.expected.maximum);
+        let (name, seed, length) = (self.name.clone(), self.said.seed, self.said.options.maximum);
         let mut pushed = self.begun(T::VALUES, T::HAS_LOOKUPS, length)?;
         pushed.drive(|pushed, request| {
             let block = source(request).map_err(|Panic { draw, message }| {

@@ -138,14 +138,14 @@ pub enum CheckFault {
         /// The property.
         what: &'static str,
         /// Number of numbers that were given.
-        result: usize,
+        actual: usize,
         /// Number of values of a draw.
         expected: usize,
     },
     /// A draw has another number of values than the case has channels.
     Channels {
         /// Number of values of a draw.
-        result: usize,
+        actual: usize,
         /// Names of the channels.
         channels: Vec<String>,
         /// Numbers of values that a draw may have, in words.
@@ -156,7 +156,7 @@ pub enum CheckFault {
         /// The property.
         what: &'static str,
         /// Number of numbers that were given.
-        result: usize,
+        actual: usize,
         /// Numbers that it takes, in words.
         expected: &'static str,
     },
@@ -180,7 +180,7 @@ pub enum CheckFault {
     /// There are more or fewer lookups than draws.
     Lookups {
         /// Number of lookups.
-        result: usize,
+        actual: usize,
         /// Number of draws.
         expected: usize,
     },
@@ -198,7 +198,7 @@ pub enum CheckFault {
     /// The last draw is not whole.
     Ragged {
         /// Number of numbers.
-        result: usize,
+        actual: usize,
         /// Number of values of a draw.
         expected: usize,
     },
@@ -232,23 +232,23 @@ impl fmt::Display for CheckFault {
             Self::TooManyValues(values) => {
                 write!(f, "a draw has {values} values; {MAX_VALUES} are judged together at most")
             }
-            Self::Values { what, result, expected } => {
-                let (result, expected) = (counted(*result, "number"), counted(*expected, "value"));
+            Self::Values { what, actual, expected } => {
+                let (actual, expected) = (counted(*actual, "number"), counted(*expected, "value"));
                 write!(
                     f,
-                    "{result} for the {what}, but a draw has {expected}; give one for each value, or one for all"
+                    "{actual} for the {what}, but a draw has {expected}; give one for each value, or one for all"
                 )
             }
-            Self::Channels { result, channels, expected } => {
+            Self::Channels { actual, channels, expected } => {
                 let names = match &channels[..] {
                     [one] if one.is_empty() => "its only one".to_owned(),
                     _ => channels.join(", "),
                 };
-                let (result, all) = (counted(*result, "value"), counted(channels.len(), "channel"));
-                write!(f, "a draw has {result}, but the case has {all} ({names}); give draws of {expected}")
+                let (actual, all) = (counted(*actual, "value"), counted(channels.len(), "channel"));
+                write!(f, "a draw has {actual}, but the case has {all} ({names}); give draws of {expected}")
             }
-            Self::Count { what, result, expected } => {
-                write!(f, "{what} takes {expected}, but was given {}", counted(*result, "number"))
+            Self::Count { what, actual, expected } => {
+                write!(f, "{what} takes {expected}, but was given {}", counted(*actual, "number"))
             }
             Self::Whole { what, value, min, max } => {
                 let value = number(*value);
@@ -264,16 +264,16 @@ impl fmt::Display for CheckFault {
             Self::NoLookupsWanted => f.write_str(
                 "nothing is known of the lookups; give .lookups(mean, variance), or push draws alone",
             ),
-            Self::Lookups { result, expected } => {
-                write!(f, "{result} lookups for {expected} draws; give one for each draw")
+            Self::Lookups { actual, expected } => {
+                write!(f, "{actual} lookups for {expected} draws; give one for each draw")
             }
             Self::Case(message) => f.write_str(message),
             Self::Panicked { draw, seed, message } => {
                 write!(f, "the estimator panicked in draw {draw} (seed {seed}): {message}")
             }
-            Self::Ragged { result, expected } => write!(
+            Self::Ragged { actual, expected } => write!(
                 f,
-                "{result} numbers are no whole number of draws of {expected} values; push whole draws"
+                "{actual} numbers are no whole number of draws of {expected} values; push whole draws"
             ),
             Self::NoDraws => f.write_str("there are no draws; make one at least"),
         }

@@ -142,8 +142,8 @@ struct Given<'a> {
 impl Given<'_> {
     /// Returns exactly `N` numbers.
     fn exactly<const N: usize>(&self, expected: &'static str) -> Result<[f64; N], CheckFault> {
-        let (what, result) = (self.what, self.numbers.len());
-        self.numbers.try_into().map_err(|_| CheckFault::Count { what, result, expected })
+        let (what, actual) = (self.what, self.numbers.len());
+        self.numbers.try_into().map_err(|_| CheckFault::Count { what, actual, expected })
     }
 
     fn one(&self) -> Result<f64, CheckFault> {

@@ -47,7 +47,7 @@ impl Check<()> {
     fn opened(self, numbers: Option<usize>) -> Result<Pushed, CheckError> {
         let values = self.said.values();
         let length =
-            numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.expected.maximum);
+            numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.options.maximum);
         let has_lookups = self.said.has_lookups();
         self.begun(values, has_lookups, length)
     }
@@ -67,7 +67,7 @@ impl Check<()> {
     /// Numbers that address the blocks of draws.
     fn plan(&self) -> BlockPlan {
         let (seed, experiment) = (self.said.seed, name_hash(&self.name));
-        BlockPlan { seed, experiment, maximum: self.said.expected.maximum.unwrap_or(MAX_DRAWS) }
+        BlockPlan { seed, experiment, maximum: self.said.options.maximum.unwrap_or(MAX_DRAWS) }
     }
 }
 
@@ -159,7 +159,7 @@ impl Pushed {
         mut source: impl FnMut(&mut Self, BlockRequest) -> Result<bool, E>,
     ) -> Result<(), E> {
         let plan = self.check.plan();
-        let is_fixed = self.check.said.expected.maximum.is_some();
+        let is_fixed = self.check.said.options.maximum.is_some();
         let until = Until { maximum: Some(plan.maximum), is_decided: !is_fixed };
         let stopped = drive(self, until, |pushed, draws| {
             let request = BlockRequest { draws, block: pushed.next, plan };
@@ -209,9 +209,9 @@ impl Pushed {
             self.session = self.check.session(self.values(), true, self.length)?;
             self.has_lookups = true;
         }
-        let (result, expected) = (lookups.len(), draws.len() / self.values());
-        if result != expected {
-            return Err(CheckFault::Lookups { result, expected }.of(&self.check.name));
+        let (actual, expected) = (lookups.len(), draws.len() / self.values());
+        if actual != expected {
+            return Err(CheckFault::Lookups { actual, expected }.of(&self.check.name));
         }
         self.push(draws, lookups)
     }
@@ -244,7 +244,7 @@ impl Pushed {
         let Self { check, session, stopped, .. } = self;
         let channels = check.said.names(session.values());
         let values = session.outcome(stopped);
-        Ok(Outcome { name: check.name, alpha: check.said.expected.alpha, channels, values })
+        Ok(Outcome { name: check.name, alpha: check.said.options.alpha, channels, values })
     }
 
     /// Panics unless the draws pass.
@@ -261,7 +261,7 @@ impl Pushed {
     fn push(&mut self, draws: &[f64], lookups: &[f64]) -> Result<(), CheckError> {
         let expected = self.values();
         if !draws.len().is_multiple_of(expected) {
-            let fault = CheckFault::Ragged { result: draws.len(), expected };
+            let fault = CheckFault::Ragged { actual: draws.len(), expected };
             return Err(fault.of(&self.check.name));
         }
         if expected == 1 {

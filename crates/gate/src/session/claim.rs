@@ -294,7 +294,7 @@ pub struct CheckedClaim {
     /// Claim on a draw.
     pub claim: Claim,
     /// Error rate, tolerances and number of draws.
-    pub expected: Options,
+    pub options: Options,
     /// Number of draws, if known.
     pub length: Option<u64>,
 }
@@ -305,20 +305,20 @@ impl CheckedClaim {
     /// # Errors
     ///
     /// A tolerance, a number of draws or α is invalid for this claim.
-    pub fn new(claim: Claim, expected: Options, length: Option<u64>) -> Result<Self, ClaimError> {
+    pub fn new(claim: Claim, options: Options, length: Option<u64>) -> Result<Self, ClaimError> {
         let positive = |what, value: Option<f64>| match value {
             Some(value) if !(value > 0.0 && value.is_finite()) => {
                 Err(ClaimError::Number { what, value, expected: "a finite number above 0" })
             }
             _ => Ok(()),
         };
-        positive("tolerance", expected.tolerance)?;
-        positive("variance tolerance", expected.variance_tolerance)?;
-        positive("batch", Some(expected.batch as f64))?;
-        positive("number of draws", expected.maximum.map(|maximum| maximum as f64))?;
-        check_alpha(expected.alpha)?;
-        let trial = Self { claim, expected, length };
-        if expected.variance_tolerance.is_some() {
+        positive("tolerance", options.tolerance)?;
+        positive("variance tolerance", options.variance_tolerance)?;
+        positive("batch", Some(options.batch as f64))?;
+        positive("number of draws", options.maximum.map(|maximum| maximum as f64))?;
+        check_alpha(options.alpha)?;
+        let trial = Self { claim, options, length };
+        if options.variance_tolerance.is_some() {
             let why = match claim.variance {
                 None => Some("none is claimed"),
                 Some(_) if trial.is_certain() || trial.is_faint() => Some("rounding hides it"),
@@ -326,7 +326,7 @@ impl CheckedClaim {
             };
             why.map_or(Ok(()), |why| Err(ClaimError::NoVariance(why)))?;
         }
-        if claim.truth == 0.0 && expected.tolerance.is_none() && !trial.is_certain() {
+        if claim.truth == 0.0 && options.tolerance.is_none() && !trial.is_certain() {
             return Err(ClaimError::NoUnit);
         }
         let blurred = |what, tolerance: Option<f64>, floor: f64| match tolerance {
@@ -335,13 +335,13 @@ impl CheckedClaim {
             }
             _ => Ok(()),
         };
-        blurred("mean", expected.tolerance, claim.floor())?;
+        blurred("mean", options.tolerance, claim.floor())?;
         // Without a tolerance from the caller, one above the cap would be chosen.
-        if expected.tolerance.is_none() && claim.truth != 0.0 {
+        if options.tolerance.is_none() && claim.truth != 0.0 {
             blurred("mean", Some(MEAN_CAP), claim.floor())?;
         }
         if let Some(variance) = claim.variance.filter(|&variance| variance > 0.0) {
-            blurred("variance", expected.variance_tolerance, claim.variance_floor(variance))?;
+            blurred("variance", options.variance_tolerance, claim.variance_floor(variance))?;
         }
         Ok(trial)
     }
@@ -369,8 +369,8 @@ impl CheckedClaim {
 
     /// Quantities that can be judged with this claim.
     pub(super) fn quantities(&self) -> Vec<Quantity> {
-        let Self { claim, expected, .. } = self;
-        let unit = if expected.batch > 1 { DrawUnit::Averages } else { DrawUnit::Draws };
+        let Self { claim, options, .. } = self;
+        let unit = if options.batch > 1 { DrawUnit::Averages } else { DrawUnit::Draws };
         let is_bounded = claim.range.is_some_and(|[low, high]| (high - low).is_finite());
         let mut quantities = Vec::new();
         if !self.is_certain() {
@@ -380,7 +380,7 @@ impl CheckedClaim {
             // The variance of the draws themselves is no ground to fail.
             let ground = known.or(promised).or((!is_bounded).then_some(VarianceBound::Shown));
             let in_units = |end: f64| (end - claim.truth) / claim.unit;
-            let mean = Quantity::mean(ground, claim.floor()).within(expected.tolerance);
+            let mean = Quantity::mean(ground, claim.floor()).within(options.tolerance);
             let range = claim.widened().map(|range| range.map(in_units));
             quantities.push(Quantity { range, unit, ..mean.of(claim.truth, claim.unit) });
         }
@@ -401,7 +401,7 @@ impl CheckedClaim {
                 // A square is never negative: the variance may be refuted as too large without any other claim.
                 range: (is_bounded || known.is_none()).then_some([-1.0, furthest - 1.0]),
                 unit,
-                ..quantity.within(expected.variance_tolerance).of(variance, variance)
+                ..quantity.within(options.variance_tolerance).of(variance, variance)
             });
         }
         if let Some(claimed) = claim.lookups.filter(|claimed| !claimed.is_fixed()) {

@@ -13,8 +13,8 @@ use numeric::digits::short;
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     // Without a ground to fail the mean, a change has no ground either.
     let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
-    let (ln_e, batch) = (mean.ln_change, reading.trial.expected.batch);
-    let ln_e_limit = -(SIDE_SHARE * reading.trial.expected.alpha).ln();
+    let (ln_e, batch) = (mean.ln_change, reading.trial.options.batch);
+    let ln_e_limit = -(SIDE_SHARE * reading.trial.options.alpha).ln();
     let is_refuted = (ln_e >= ln_e_limit || mean.has_failed()) && mean.is_founded();
     let change = mean.obvious_change().filter(|_| is_refuted);
     let Some(change) = change else {
@@ -50,7 +50,7 @@ pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Opt
 
 /// Finds dependence of draws: half of the level is for adjacent draws, half for replays.
 pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
-    let ln_e_limit = (2.0 / reading.trial.expected.alpha).ln();
+    let ln_e_limit = (2.0 / reading.trial.options.alpha).ln();
     let mut finding = IndependenceFinding {
         ln_e: reading.independence.ln_e(),
         ln_e_limit,
@@ -136,7 +136,7 @@ struct Again {
 
 /// Finds a repetition of draws. Three searches share their half of the level; with averages, five do.
 fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
-    let batch = reading.trial.expected.batch;
+    let batch = reading.trial.options.batch;
     let searches: f64 = if batch == 1 { 3.0 } else { 5.0 };
     let limit = ln_e_limit + searches.ln();
     let unit = if batch == 1 { "draws" } else { "averages" };

@@ -92,20 +92,20 @@ impl Session {
     /// The settings of the verdict are invalid for a claim.
     pub fn new(
         claims: &[Claim],
-        expected: Options,
+        options: Options,
         length: Option<u64>,
         taken: Option<TheoryClaims>,
     ) -> Result<Self, ClaimError> {
-        claim::check_alpha(expected.alpha)?;
-        let expected = Options { alpha: expected.alpha / claims.len() as f64, ..expected };
-        let maximum = expected.maximum.unwrap_or(u64::MAX);
+        claim::check_alpha(options.alpha)?;
+        let options = Options { alpha: options.alpha / claims.len() as f64, ..options };
+        let maximum = options.maximum.unwrap_or(u64::MAX);
         // A decision may end the draws earlier.
-        let certain = length.map(|length| length.min(maximum)).filter(|_| !expected.stop_early);
+        let certain = length.map(|length| length.min(maximum)).filter(|_| !options.stop_early);
         let mut background = taken
-            .map_or_else(Background::default, |taken| taken.background(&expected, claims, certain));
+            .map_or_else(Background::default, |taken| taken.background(&options, claims, certain));
         let reading = |(index, claim): (usize, &Claim)| {
             let lookups = claim.lookups.filter(|_| index == 0);
-            let trial = CheckedClaim::new(Claim { lookups, ..*claim }, expected, length)?;
+            let trial = CheckedClaim::new(Claim { lookups, ..*claim }, options, length)?;
             // The first reading tests the draw as a whole.
             Ok(Reading::new(trial, std::mem::take(&mut background)))
         };
@@ -357,7 +357,7 @@ impl CheckedClaim {
     ///
     /// The errors of the source.
     pub fn judge<S: Source>(&self, source: &mut S) -> Result<Judgement, S::Error> {
-        let mut judged = Session::from(*self).judge(source, self.expected.until())?;
+        let mut judged = Session::from(*self).judge(source, self.options.until())?;
         Ok(judged.swap_remove(0))
     }
 

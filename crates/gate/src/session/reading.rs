@@ -92,14 +92,14 @@ impl Reading {
     pub(super) fn new(trial: CheckedClaim, background: Background) -> Self {
         let quantities = trial.quantities();
         let others = u32::from(!trial.is_certain()) + u32::from(background.tests.is_some());
-        let levels = Levels::new(main_share(others) * trial.expected.alpha, quantities.len());
-        let maximum = trial.expected.maximum.unwrap_or(u64::MAX);
-        let length = trial.length.map(|length| length.min(maximum) / trial.expected.batch);
+        let levels = Levels::new(main_share(others) * trial.options.alpha, quantities.len());
+        let maximum = trial.options.maximum.unwrap_or(u64::MAX);
+        let length = trial.length.map(|length| length.min(maximum) / trial.options.batch);
         // Few draws make small blocks, so that later ones can be judged from earlier ones.
         let block = length.map_or(BUFFER, |n| usize::try_from(n / 16).unwrap_or(BUFFER));
         let block = block.next_power_of_two().clamp(FEW, BUFFER);
         // A known variance is judged in the blocks of a run.
-        let is_known = trial.claim.variance.is_some() && trial.expected.batch == 1;
+        let is_known = trial.claim.variance.is_some() && trial.options.batch == 1;
         let block = if is_known { BUFFER } else { block };
         let planned = CheckedClaim::planned(&quantities, length);
         let scalar = |check: CheckId| {
@@ -117,14 +117,14 @@ impl Reading {
             range: trial.claim.widened(),
             read: 0,
             judged: 0,
-            averages: [Averages::new(trial.expected.batch), Averages::new(trial.expected.batch)],
+            averages: [Averages::new(trial.options.batch), Averages::new(trial.options.batch)],
             block,
             independence: Independence::default(),
             replays: Replays::default(),
             sequences: Sequences::default(),
             runs: Runs::default(),
             steps: Steps::default(),
-            contents: (trial.expected.batch > 1).then(|| Contents::new(trial.expected.batch)),
+            contents: (trial.options.batch > 1).then(|| Contents::new(trial.options.batch)),
             lookup_sum: Sum::default(),
             is_single: true,
             is_varied: false,
@@ -176,7 +176,7 @@ impl Reading {
         self.look_at_each(block, lookups);
         self.read += block.len() as u64;
         self.lookup_sum.add(lookups.iter().sum());
-        if self.trial.expected.batch == 1 {
+        if self.trial.options.batch == 1 {
             for (at, part) in block.chunks(self.block).enumerate() {
                 let first = (at * self.block).min(lookups.len());
                 let last = (first + part.len()).min(lookups.len());
@@ -250,7 +250,7 @@ impl Reading {
     #[allow(clippy::needless_bitwise_bool)] // without branches, see `are_all`
     fn judge(&mut self, block: &[f64], lookups: &[f64]) {
         let claim = &self.trial.claim;
-        let batch = self.trial.expected.batch;
+        let batch = self.trial.options.batch;
         let (truth, unit) = (claim.truth, claim.unit);
         self.y.clear();
         self.y.extend(block.iter().map(|x| (x - truth) / unit));
@@ -328,7 +328,7 @@ impl Reading {
         let mut notes = std::mem::take(&mut self.background.notes);
         notes.extend(tested.untested);
         let is_single = self.ends.as_ref().map_or(self.is_single, |ends| ends.is_single);
-        let CheckedClaim { claim, expected, length } = &self.trial;
+        let CheckedClaim { claim, options, length } = &self.trial;
         let unit = claim.unit;
         let n = self.powers.draws() as f64;
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
@@ -345,12 +345,12 @@ impl Reading {
             reason: String::new(),
             fault: self.refuted.as_ref().map(|refuted| refuted.fault),
             guarantees: Vec::new(),
-            alpha: expected.alpha,
+            alpha: options.alpha,
             beta: MISS,
             draws: self.read,
             length: *length,
             stopped,
-            batch: expected.batch,
+            batch: options.batch,
             unfilled: self.averages[0].count,
             truth: claim.truth,
             unit,

@@ -39,7 +39,7 @@ pub trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     /// # Errors
     ///
     /// The reason why nothing is tested, as a sentence.
-    fn tests(&self, requested: TestRequest) -> Result<Box<dyn Tests>, String>;
+    fn tests(&self, request: TestRequest) -> Result<Box<dyn Tests>, String>;
 }
 
 /// Tests of a distribution that take draws.
@@ -128,7 +128,7 @@ impl TheoryClaims<'_> {
     /// a value, `length` the number of draws, where it is known and no decision ends them earlier.
     pub(super) fn background(
         self,
-        expected: &Options,
+        options: &Options,
         claims: &[Claim],
         length: Option<u64>,
     ) -> Background {
@@ -143,10 +143,10 @@ impl TheoryClaims<'_> {
         let untested = |why: &str| format!("the distribution is not tested: {why}");
         if is_mean_only {
             background.notes.push(untested("of theory the mean alone is taken"));
-        } else if expected.batch > 1 {
+        } else if options.batch > 1 {
             background.notes.push(untested("averages of draws have another one"));
         } else {
-            let alpha = SIDE_SHARE * expected.alpha;
+            let alpha = SIDE_SHARE * options.alpha;
             let rounding = claims.first().map_or(0.0, |claim| claim.rounding);
             let requested = TestRequest { alpha, length, has_lookups, rounding, values };
             match theory.distribution.tests(requested) {

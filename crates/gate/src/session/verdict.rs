@@ -239,7 +239,7 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
 
 /// Reason why a tolerance of the mean is not used.
 fn unused_tolerance(reading: &Reading) -> Option<String> {
-    let requested = reading.trial.expected.tolerance.filter(|_| reading.mean.is_none())?;
+    let requested = reading.trial.options.tolerance.filter(|_| reading.mean.is_none())?;
     Some(format!(
         "the tolerance of {requested:.1e} is not used: the variance given allows rounding alone; leave the variance \
          out, or give a larger one"

@@ -6,7 +6,8 @@
 //! all else                      the inner walk's
 //! ```
 //!
-//! [`Renumbered`] random numbers change a decision inside a step. A change without a bug calls the inner steps alone: with it the walk is the control.
+//! [`Renumbered`] random numbers change a decision inside a step. A change without a bug calls the inner steps alone: with
+//! it the walk is the control.
 
 use estimators::walks::{GROUPS, Route, SOME_LEFT, Scores, TentativeCollision, Walk};
 use media::Batches;

@@ -23,17 +23,17 @@ const STREAMS: &[Shown] = shown!(&StreamVerdicts: "law", "known", "pass", "fail"
 const MUTANTS: &[Shown] = shown!(&Caught: "mutant", "place" 1, "check", "draws", "others" 2);
 
 /// Returns the tables for the screen.
-pub fn table(computed: &SelfTest, pen: Pen) -> String {
+pub fn table(self_test: &SelfTest, pen: Pen) -> String {
     let mut text = String::new();
-    promises(&mut text, pen, &computed.calibration);
-    streams(&mut text, pen, &computed.streams);
-    mutants(&mut text, pen, &computed.mutants);
-    let verdict = if computed.holds() {
+    promises(&mut text, pen, &self_test.calibration);
+    streams(&mut text, pen, &self_test.streams);
+    mutants(&mut text, pen, &self_test.mutants);
+    let verdict = if self_test.holds() {
         pen.paint(Paint::Green, "every promise is kept and every mutant is caught")
     } else {
         pen.paint(Paint::Red, "a promise is broken or a mutant escapes")
     };
-    let _ = writeln!(text, "{verdict} · {} s", short(computed.seconds, 3));
+    let _ = writeln!(text, "{verdict} · {} s", short(self_test.seconds, 3));
     text
 }
 
@@ -147,18 +147,18 @@ table! {
 }
 
 /// Returns the tables as CSV files.
-pub fn artifacts(computed: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
+pub fn artifacts(self_test: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     Ok(vec![
         fields::artifact(
             "self-test/calibration.csv",
             &<&Rate>::of_files(),
-            rates(&computed.calibration),
+            rates(&self_test.calibration),
         )?,
         fields::artifact(
             "self-test/foreign-streams.csv",
             &<&StreamVerdicts>::fields(),
-            &computed.streams,
+            &self_test.streams,
         )?,
-        fields::artifact("self-test/mutants.csv", &<&Caught>::of_files(), &computed.mutants)?,
+        fields::artifact("self-test/mutants.csv", &<&Caught>::of_files(), &self_test.mutants)?,
     ])
 }

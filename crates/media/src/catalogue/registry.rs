@@ -63,9 +63,9 @@ impl<T> Registry<T> {
         settings: &Settings,
         read: impl FnOnce(&T, &Settings) -> Option<R>,
     ) -> Option<R> {
-        let actual = read(&self.values[index], settings);
+        let value = read(&self.values[index], settings);
         settings.close();
-        actual
+        value
     }
 }
 

@@ -371,12 +371,12 @@ impl Problem for SingleScattering {
 }
 
 /// Reports a light on the line of the ray.
-fn off_the_line<T>(settings: &Settings, actual: Result<T, OnTheLine>) -> Option<T> {
-    if let Err(OnTheLine(distance)) = actual {
-        let actual = format!("the light is {distance:e} away from the line of the ray");
-        settings.fault("light", actual, "move it off the line: on the ray L is infinite");
+fn off_the_line<T>(settings: &Settings, result: Result<T, OnTheLine>) -> Option<T> {
+    if let Err(OnTheLine(distance)) = result {
+        let result = format!("the light is {distance:e} away from the line of the ray");
+        settings.fault("light", result, "move it off the line: on the ray L is infinite");
     }
-    actual.ok()
+    result.ok()
 }
 
 /// Single scattering of a point light in several channels.

@@ -47,27 +47,29 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
 }
 
 /// Returns the comparison of two stacks and its method.
-fn against_line(finding: &StackComparison) -> String {
-    let method = match finding.method {
-        ComparisonMethod::Permutation => format!("{} permutations of passes", finding.permutations),
+fn against_line(comparison: &StackComparison) -> String {
+    let method = match comparison.method {
+        ComparisonMethod::Permutation => {
+            format!("{} permutations of passes", comparison.permutations)
+        }
         ComparisonMethod::Signs => "signs of differences".to_owned(),
         ComparisonMethod::None => {
             "no test: too few passes of pixels that depend on each other".to_owned()
         }
     };
-    let spread = finding.spread.map_or(String::new(), |ratio| {
-        let p = if finding.permutations > 0 {
-            format!(" (p = {})", short(finding.spread_p, 2))
+    let spread = comparison.spread.map_or(String::new(), |ratio| {
+        let p = if comparison.permutations > 0 {
+            format!(" (p = {})", short(comparison.spread_p, 2))
         } else {
             String::new()
         };
-        let word = if finding.is_same_distribution { "" } else { "; reported only" };
+        let word = if comparison.is_same_distribution { "" } else { "; reported only" };
         format!("; variance {} times that of the reference{p}{word}", fixed(ratio, 4))
     });
     format!(
         "{} passes of the reference; equal distributions: p = {} ({method}){spread}",
-        finding.passes,
-        short(finding.p, 3)
+        comparison.passes,
+        short(comparison.p, 3)
     )
 }
 

@@ -15,15 +15,15 @@ const COLUMNS: &[Shown] = shown!(&TrialRow:
 );
 
 /// Returns the stress test as a page of HTML.
-pub fn text(computed: &Stress) -> Result<String, ReportError> {
-    let rows: Vec<&TrialRow> = computed.rows.iter().collect();
+pub fn text(stress: &Stress) -> Result<String, ReportError> {
+    let rows: Vec<&TrialRow> = stress.rows.iter().collect();
     let broken = rows.iter().filter(|row| !row.holds()).count();
     let (class, line) = match broken {
         0 => ("pass", format!("pass: all {} bounds hold", rows.len())),
         broken => ("fail", format!("fail: {broken} of {} bounds are broken", rows.len())),
     };
     let label = "single precision: its bias beside the statistical error of 1e8 draws".to_owned();
-    let plot = plot("single".to_owned(), label, &super::plot::figure(&computed.narrow.curves)?);
+    let plot = plot("single".to_owned(), label, &super::plot::figure(&stress.narrow.curves)?);
     let plots = [vec![plot]];
     let sections = html! {
         (definitions(&plots))
@@ -33,7 +33,7 @@ pub fn text(computed: &Stress) -> Result<String, ReportError> {
             (plots[0][0].show())
         }
     };
-    let head = html! { p { (time(computed.seconds)) } };
+    let head = html! { p { (time(stress.seconds)) } };
     Ok(page("numbers under stress", (class, &line), &head, &sections))
 }
 

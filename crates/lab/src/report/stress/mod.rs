@@ -24,9 +24,9 @@ const COLUMNS: &[Shown] = shown!(&TrialRow:
 );
 
 /// Returns the tables for the screen.
-pub fn table(computed: &Stress, pen: Pen) -> String {
+pub fn table(stress: &Stress, pen: Pen) -> String {
     let mut text = String::new();
-    let rows: Vec<&TrialRow> = computed.rows.iter().collect();
+    let rows: Vec<&TrialRow> = stress.rows.iter().collect();
     text.push_str(&judged(&rows, COLUMNS, ("holds", ["yes", "NO"]), |row| row.holds(), pen));
     for row in rows.iter().filter(|row| !row.holds()) {
         let said = if row.is_mostly_skipped() {
@@ -40,14 +40,14 @@ pub fn table(computed: &Stress, pen: Pen) -> String {
         pen.say(&mut text, Paint::Red, &said);
     }
     text.push('\n');
-    single_precision(&mut text, pen, &computed.narrow.curves);
+    single_precision(&mut text, pen, &stress.narrow.curves);
     let broken = rows.iter().filter(|row| !row.holds()).count();
     let verdict = if broken == 0 {
         pen.paint(Paint::Green, &format!("all {} bounds hold", rows.len()))
     } else {
         pen.paint(Paint::Red, &format!("{broken} of {} bounds are broken", rows.len()))
     };
-    let _ = writeln!(text, "{verdict} · {} s", short(computed.seconds, 3));
+    let _ = writeln!(text, "{verdict} · {} s", short(stress.seconds, 3));
     text
 }
 
@@ -85,9 +85,9 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[PrecisionCurve]) {
 }
 
 /// Returns the tables as JSON; numbers that are not finite are null.
-fn json(computed: &Stress) -> Result<String, ReportError> {
+fn json(stress: &Stress) -> Result<String, ReportError> {
     let (fields, of_points) = (<&TrialRow>::of_files(), PrecisionPoint::fields());
-    let curves = computed.narrow.curves.iter().map(|curve| {
+    let curves = stress.narrow.curves.iter().map(|curve| {
         let point = |row| object(&of_points[OF_CURVES..], &row);
         json!({
             "family": curve.family,
@@ -97,10 +97,10 @@ fn json(computed: &Stress) -> Result<String, ReportError> {
             "points": points(curve).map(point).collect::<Vec<_>>(),
         })
     });
-    let rows = computed.rows.iter().map(|row| object(&fields, &row));
+    let rows = stress.rows.iter().map(|row| object(&fields, &row));
     let document = json!({
         "schema": 1,
-        "holds": computed.holds(),
+        "holds": stress.holds(),
         "rows": rows.collect::<Vec<_>>(),
         "single_precision": curves.collect::<Vec<_>>(),
     });
@@ -152,16 +152,16 @@ table! {
 }
 
 /// Returns the tables as CSV and JSON and the plot of single precision, all below `stress/`.
-pub fn artifacts(computed: &Stress) -> Result<Vec<Artifact>, ReportError> {
-    let points = computed.narrow.curves.iter().flat_map(points);
+pub fn artifacts(stress: &Stress) -> Result<Vec<Artifact>, ReportError> {
+    let points = stress.narrow.curves.iter().flat_map(points);
     let path = |name: &str| format!("{FOLDER}/{name}");
     let mut all = vec![
-        fields::artifact(&path("stress.csv"), &<&TrialRow>::of_files(), &computed.rows)?,
-        Artifact::text(path("stress.json"), json(computed)?),
+        fields::artifact(&path("stress.csv"), &<&TrialRow>::of_files(), &stress.rows)?,
+        Artifact::text(path("stress.json"), json(stress)?),
         fields::artifact(&path("single-precision.csv"), &PrecisionPoint::fields(), points)?,
-        Artifact::text(path("report.html"), html::text(computed)?),
+        Artifact::text(path("report.html"), html::text(stress)?),
     ];
-    let sheet = plot::figure(&computed.narrow.curves)?;
+    let sheet = plot::figure(&stress.narrow.curves)?;
     all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);
     Ok(all)
 }
